@@ -38,10 +38,11 @@ double rest(double change, double factor, double order) {
   return kSafety * std::abs(change) / (std::pow(factor, order) - 1.0);
 }
 
-/// Of an extreme, which shows no order. Its factor is that of a change between
-/// edges h and 2 h for every change: the changes of a peak come in leaps.
-double rest_of_extreme(double change) {
-  return rest(change, kEdgeFactors[2], kLeastOrder);
+/// Of an extreme, which shows no order; one that has a limit for sure falls
+/// with the edges. The factor is that of a change between edges h and 2 h for
+/// every change: the changes of a peak come in leaps.
+double rest_of_extreme(double change, bool has_limit) {
+  return rest(change, kEdgeFactors[2], has_limit ? kMostOrder : kLeastOrder);
 }
 
 FigureKind kind_of(const case_data::Case& input, int response) {
@@ -101,11 +102,13 @@ FigureError figure_error(const MeshValues& values, FigureKind kind) {
   const double order = same_way
                            ? std::log(before / last) / std::log(kEdgeFactors[1])
                            : kUnseenOrder;
-  const bool settles =
-      !same_way || order >= kLeastOrder || change <= kNoTrend * std::abs(fine);
+  const bool falls = kind == FigureKind::Peak && last < 0.0;
+  const bool settles = !same_way || falls || order >= kLeastOrder ||
+                       change <= kNoTrend * std::abs(fine);
   // 3. What is left.
-  if (kind == FigureKind::Extreme) {
-    return {rest_of_extreme(change), settles};
+  if (kind == FigureKind::Extreme || kind == FigureKind::Peak) {
+    return {rest_of_extreme(change, kind == FigureKind::Peak && settles),
+            settles};
   }
   if (of_film) {
     return {rest(last, kEdgeFactors[1],
@@ -150,13 +153,18 @@ double error_by_finer_film(const case_data::Case& input,
 
 }  // namespace
 
-std::vector<FigureError> response_errors(const case_data::Case& input,
-                                         const MeshSequence& meshes,
-                                         const VectorX& dual) {
+std::vector<FigureError> response_errors(
+    const case_data::Case& input, const MeshSequence& meshes,
+    const VectorX& dual, const std::vector<FigureError>& peaks) {
   std::vector<FigureError> errors;
   for (int r = 0; r < static_cast<int>(input.responses.size()); ++r) {
     const FigureKind kind = kind_of(input, r);
-    FigureError error = figure_error(values_of(meshes, r), kind);
+    const case_data::ResponseEntry& response =
+        input.responses[static_cast<std::size_t>(r)];
+    FigureError error =
+        !peaks.empty() && response.kind == case_data::ResponseKind::MaxVonMises
+            ? peaks[static_cast<std::size_t>(response.load_case)]
+            : figure_error(values_of(meshes, r), kind);
     const double film = error_by_finer_film(input, meshes, r);
     if (kind == FigureKind::Film) {
       // Other meshes stand in where the film's own facets say nothing, but for

@@ -19,14 +19,15 @@ using MeshValues = std::array<double, 4>;
 enum class FigureKind {
   Film,      // areas, energies, pressures, margins of films: no singular rims
   Integral,  // displacements, masses, energies, frequencies
-  Extreme    // peaks, necks, gaps, buckling factors: local, of no known order
+  Extreme,   // peaks, necks, gaps, buckling factors: local, of no known order
+  Peak       // of stress, where geometry knows of no edge without a limit
 };
 
 struct FigureError {
   double bound = 0.0;   // of the first value, both ways, >= 0; NaN where only
                         // that one is known, or all meshes agree to rounding
   bool settles = true;  // false: its changes do not shrink with the edges, as
-                        // where there is no limit
+                        // where there is no limit; a Peak that falls has one
 };
 
 /// From the changes between the meshes and the order p that they show:
@@ -48,10 +49,11 @@ double finer_film_error(double own, double finer, FilmLaw law);
 
 /// Of each response; figures of films by their finer film where it is there,
 /// all others by the meshes; `dual`: of the elements alone where estimated (NaN
-/// where not; empty: none), no bound is below it.
-std::vector<FigureError> response_errors(const case_data::Case& input,
-                                         const MeshSequence& meshes,
-                                         const VectorX& dual);
+/// where not; empty: none), no bound is below it. `peaks`: by load case, for
+/// its max_von_mises (empty: by the meshes as any extreme).
+std::vector<FigureError> response_errors(
+    const case_data::Case& input, const MeshSequence& meshes,
+    const VectorX& dual, const std::vector<FigureError>& peaks = {});
 
 /// Their bounds, in order.
 VectorX bounds_of(const std::vector<FigureError>& errors);

@@ -176,6 +176,21 @@ double growth_of_peak(const StressFigures& figures) {
              : 0.0;
 }
 
+double extrapolated_part(const StressFigures& figures) {
+  return figures.readings.largest().von_mises -
+         figures.readings.points.von_mises;
+}
+
+bool may_be_singular(const EvaluationFields& fields,
+                     const StressFigures& figures) {
+  const auto& materials = fields.inputs.materials;
+  const auto differs = [&](const element::Material& material) {
+    return material.name != materials.front().name;
+  };
+  return growth_of_peak(figures) > 0.0 ||
+         std::ranges::any_of(materials, differs);
+}
+
 bool has_no_limit(const StressFigures& figures) {
   return growth_of_peak(figures) > kNoLimit * figures.max_von_mises;
 }

@@ -64,6 +64,17 @@ std::vector<double> highest_readings(const EvaluationFields& fields);
 /// What the singular place would have above the peak [pressure], >= 0.
 double growth_of_peak(const StressFigures& figures);
 
+/// How far the highest reading stands above the peak of the integration points
+/// [pressure], >= 0: what is extrapolated to the surface. It falls with the
+/// edges, and does not depend on other meshes that agree by chance.
+double extrapolated_part(const StressFigures& figures);
+
+/// True where the peak may grow with every refinement: a singular place would
+/// have more on shorter edges, or materials differ, whose common edges the
+/// search for such places does not know.
+bool may_be_singular(const EvaluationFields& fields,
+                     const StressFigures& figures);
+
 /// That is more than a few per cent of the peak, which has no limit then.
 bool has_no_limit(const StressFigures& figures);
 

@@ -118,9 +118,11 @@ class StudyRun {
   }
   accuracy::MeshSequence other_meshes(bool with_eigen);
   void combine_errors(const accuracy::MeshSequence& meshes);
-  void add_peak_errors(const accuracy::MeshSequence& meshes);
-  std::vector<std::size_t> peaks_of(std::size_t load_case) const;
-  void share_peak_error(std::size_t load_case);
+  std::vector<accuracy::FigureError> peak_errors(
+      const accuracy::MeshSequence& meshes) const;
+  accuracy::MeshValues peak_values(const accuracy::MeshSequence& meshes,
+                                   std::size_t load_case) const;
+  void share_peak_errors();
   void warn();
   void count();
 
@@ -420,66 +422,69 @@ accuracy::MeshSequence StudyRun::other_meshes(bool with_eigen) {
   return meshes;
 }
 
-/// The responses that are the peak of a load case.
-std::vector<std::size_t> StudyRun::peaks_of(std::size_t load_case) const {
+/// Of each load case's peak, by its highest readings on the meshes, and by
+/// what geometry and the readings say.
+std::vector<accuracy::FigureError> StudyRun::peak_errors(
+    const accuracy::MeshSequence& meshes) const {
+  std::vector<accuracy::FigureError> errors;
+  for (std::size_t k = 0; k < result_.stress.size(); ++k) {
+    const forward::StressFigures& figures = result_.stress[k];
+    accuracy::FigureError error = accuracy::figure_error(
+        peak_values(meshes, k), forward::may_be_singular(fields_, figures)
+                                    ? accuracy::FigureKind::Extreme
+                                    : accuracy::FigureKind::Peak);
+    error.bound = std::fmax(error.bound, forward::growth_of_peak(figures));
+    error.bound = std::fmax(error.bound, forward::extrapolated_part(figures));
+    // One that has no limit by geometry has its own warning.
+    error.settles = error.settles || forward::has_no_limit(figures);
+    errors.push_back(error);
+  }
+  return errors;
+}
+
+/// The highest reading of a load case's peak on each mesh.
+accuracy::MeshValues StudyRun::peak_values(const accuracy::MeshSequence& meshes,
+                                           std::size_t load_case) const {
+  accuracy::MeshValues values = {
+      result_.stress[load_case].readings.largest().von_mises};
+  for (std::size_t m = 1; m < values.size(); ++m) {
+    values[m] = load_case < meshes.peaks[m].size()
+                    ? meshes.peaks[m][load_case]
+                    : std::numeric_limits<double>::quiet_NaN();
+  }
+  return values;
+}
+
+/// A load case's peak and the responses that are the same one have one error,
+/// the largest.
+void StudyRun::share_peak_errors() {
   std::vector<std::size_t> peaks;
   for (std::size_t r = 0; r < input_.responses.size(); ++r) {
-    const case_data::ResponseEntry& response = input_.responses[r];
-    if (response.kind == case_data::ResponseKind::MaxVonMises &&
-        static_cast<std::size_t>(response.load_case) == load_case) {
+    if (input_.responses[r].kind == case_data::ResponseKind::MaxVonMises) {
       peaks.push_back(r);
     }
   }
-  return peaks;
-}
-
-/// A load case's peak and the responses that are the same one have one error.
-void StudyRun::share_peak_error(std::size_t load_case) {
-  double& shared = result_.stress[load_case].peak_error;
-  for (const std::size_t r : peaks_of(load_case)) {
-    shared = std::fmax(shared,
-                       result_.response_errors[static_cast<Eigen::Index>(r)]);
+  const auto shared = [&](std::size_t r) -> double& {
+    return result_
+        .stress[static_cast<std::size_t>(input_.responses[r].load_case)]
+        .peak_error;
+  };
+  for (const std::size_t r : peaks) {
+    shared(r) = std::fmax(
+        shared(r), result_.response_errors[static_cast<Eigen::Index>(r)]);
   }
-  for (const std::size_t r : peaks_of(load_case)) {
-    result_.response_errors[static_cast<Eigen::Index>(r)] = shared;
-  }
-}
-
-void StudyRun::add_peak_errors(const accuracy::MeshSequence& meshes) {
-  for (std::size_t k = 0; k < result_.stress.size(); ++k) {
-    forward::StressFigures& figures = result_.stress[k];
-    accuracy::MeshValues values = {figures.readings.largest().von_mises};
-    for (std::size_t m = 1; m < values.size(); ++m) {
-      values[m] = k < meshes.peaks[m].size()
-                      ? meshes.peaks[m][k]
-                      : std::numeric_limits<double>::quiet_NaN();
-    }
-    const accuracy::FigureError error =
-        accuracy::figure_error(values, accuracy::FigureKind::Extreme);
-    figures.peak_error = error.bound;
-    if (const double growth = forward::growth_of_peak(figures); growth > 0.0) {
-      figures.peak_error = std::fmax(figures.peak_error, growth);
-    }
-    share_peak_error(k);
-    if (!error.settles && !forward::has_no_limit(figures)) {
-      result_.warnings.push_back(accuracy::unsettled_text(
-          input_, fmt::format("the peak stress of '{}'", figures.load_case),
-          values, {1.0, input_.units.pressure}, Dimension::Pressure));
-    }
+  for (const std::size_t r : peaks) {
+    result_.response_errors[static_cast<Eigen::Index>(r)] = shared(r);
   }
 }
 
 void StudyRun::combine_errors(const accuracy::MeshSequence& meshes) {
-  std::vector<accuracy::FigureError> errors = accuracy::response_errors(
+  // 1. Each figure's own.
+  const std::vector<accuracy::FigureError> peaks = peak_errors(meshes);
+  const std::vector<accuracy::FigureError> errors = accuracy::response_errors(
       input_, meshes,
-      result_.element_errors ? result_.element_errors->responses : VectorX());
-  for (std::size_t k = 0; k < result_.stress.size(); ++k) {
-    if (forward::has_no_limit(result_.stress[k])) {  // it has its warning
-      for (const std::size_t r : peaks_of(k)) {
-        errors[r].settles = true;
-      }
-    }
-  }
+      result_.element_errors ? result_.element_errors->responses : VectorX(),
+      peaks);
   result_.response_errors = accuracy::bounds_of(errors);
   for (std::size_t r = 0; r < input_.responses.size(); ++r) {
     double& error = result_.response_errors[static_cast<Eigen::Index>(r)];
@@ -488,13 +493,27 @@ void StudyRun::combine_errors(const accuracy::MeshSequence& meshes) {
       error = std::fmax(error, growth);
     }
   }
+  for (std::size_t k = 0; k < peaks.size(); ++k) {
+    result_.stress[k].peak_error = peaks[k].bound;
+  }
+  share_peak_errors();
+  // 2. Which of them have no limit.
   result_.meshes = meshes.responses;
   result_.finer_film = meshes.finer_film.responses;
   for (std::string& warning :
        accuracy::unsettled_warnings(input_, meshes, errors)) {
     result_.warnings.push_back(std::move(warning));
   }
-  add_peak_errors(meshes);
+  for (std::size_t k = 0; k < peaks.size(); ++k) {
+    if (!peaks[k].settles) {
+      result_.warnings.push_back(accuracy::unsettled_text(
+          input_,
+          fmt::format("the peak stress of '{}'", result_.stress[k].load_case),
+          peak_values(meshes, k), {1.0, input_.units.pressure},
+          Dimension::Pressure));
+    }
+  }
+  // 3. What they make of a match's parameters.
   if (stage().targets() != nullptr && stage().outcome().jacobian.size() > 0) {
     result_.design_errors = matched_errors(
         input_, stage().outcome().jacobian,

@@ -8,6 +8,7 @@ import os
 import random
 import re
 import statistics
+import tomllib
 import unittest
 
 from program import ProgramTest, ROOT
@@ -121,10 +122,9 @@ def draw_crank(seed):
     r = random.Random(f"cranks {seed}")
 
     def start(match):
-        low, high = (float(x) for x in re.findall(r"[\d.]+", match[3]))
-        inner = 0.15 * (high - low)
-        unit = " mm" if "mm" in match[3] else ""
-        return (f'{match[1]}"{r.uniform(low + inner, high - inner):.4f}{unit}"'
+        low, high = (f"({x})" for x in tomllib.loads(match[3])["bounds"])
+        share = r.uniform(0.15, 0.85)
+        return (f'{match[1]}"{low} + {share:.4f} * ({high} - {low})"'
                 f"\n{match[3]}")
 
     text = (ROOT / "cases/bell_crank/case.toml").read_text()

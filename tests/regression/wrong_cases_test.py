@@ -477,7 +477,7 @@ WRONG = {
               'enclosed_by = ["eye_a"'),
         Wrong("crossing", "roots that meet", {}, 2,
               (r"case\.toml:{line}: curves 'a_root' and 'b_root' meet near ",),
-              "[curves.b_root]", "check case.toml --set root=12 "
+              "[curves.b_root]", "check case.toml --set root=12 --set apart=40 "
               "--set high_b=18"),
     ],
     "h_beam_casting": [

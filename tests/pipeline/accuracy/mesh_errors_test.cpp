@@ -49,6 +49,29 @@ TEST(MeshErrors, CoverEveryOrderFromAHalf) {
   }
 }
 
+// A peak where geometry knows of no edge without a limit: half as wide as any
+// extreme's, and falling values have a limit however they change.
+TEST(MeshErrors, OfPeaksThatHaveALimit) {
+  for (const double order : {1.0, 1.4, 2.0, 3.0}) {
+    for (const double slope : {-1.0, 1.0}) {
+      const MeshValues values = values_of(10.0, slope, order);
+      const FigureError error = figure_error(values, FigureKind::Peak);
+      EXPECT_GE(error.bound, 1.0) << "order " << order;
+      EXPECT_LT(error.bound,
+                0.5 * figure_error(values, FigureKind::Extreme).bound);
+      EXPECT_TRUE(error.settles);
+    }
+  }
+  const MeshValues falls = {115.4, 127.0, 134.9};
+  EXPECT_TRUE(figure_error(falls, FigureKind::Peak).settles);
+  EXPECT_FALSE(figure_error(falls, FigureKind::Extreme).settles);
+  // One that grows as much may be at an edge that geometry does not know.
+  const MeshValues grows = {134.9, 123.3, 115.4};
+  const FigureError error = figure_error(grows, FigureKind::Peak);
+  EXPECT_FALSE(error.settles);
+  EXPECT_EQ(error.bound, figure_error(grows, FigureKind::Extreme).bound);
+}
+
 // The third mesh changes what the two others say: errors by a change alone
 // could not tell these apart.
 TEST(MeshErrors, FollowTheOrderOfThreeMeshes) {

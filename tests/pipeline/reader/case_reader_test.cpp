@@ -265,14 +265,16 @@ TEST(CaseReader, UsesWhatASwitchedOffStudyUses) {
   };
   EXPECT_THAT(warnings({"study.kind=analyse"}), IsEmpty());
   EXPECT_THAT(warnings({"study.kind=analyse", "study.constraints=[]"}),
-              ElementsAre(HasSubstr("parameter 'hold' is not used")));
+              ElementsAre(HasSubstr("parameter 'peak' is not used"),
+                          HasSubstr("parameter 'hold' is not used")));
 }
 
 TEST(CaseReader, WarnsOfLoadsWithinThePart) {
   const reader::CaseReading reading = reader::read_case_file(
-      kBellCrank, {"load_cases.service.loads=[{ on = \"b_tip_cap\", force = "
-                   "[0, 0, \"up * 1e3\"] }, { on = \"pin_b\", force = [0, 0, "
-                   "\"along * 1e3\"] }]"});
+      kBellCrank,
+      {"load_cases.service.loads=[{ on = \"b_tip_cap\", force = "
+       "[0, 0, \"up * load_a\"] }, { on = \"pin_b\", force = [0, 0, "
+       "\"along * load_b\"] }]"});
   EXPECT_THAT(reading.problems, IsEmpty());
   EXPECT_THAT(reading.warnings,
               ElementsAre(HasSubstr("the load on 'b_tip_cap' acts within the "
