@@ -31,6 +31,7 @@ constexpr double kSameWall = 0.9;
 constexpr double kNearEdge = 1.5;
 
 constexpr double kBelowLeast = 0.05;  // of the least thickness
+constexpr double kFeather = 0.02;     // of the median one: a feather edge
 
 /// The point of the seven at the centre is the first.
 constexpr int kCentre = 0;
@@ -174,6 +175,20 @@ Distance distance_of(const element::FacePoint& a, const element::FacePoint& b) {
           of_length(2.0 / apart * e + turn * n_a, n_b, b.normal.norm())};
 }
 
+double median_distance(const TetMesh& mesh, const ThicknessPairs& pairs) {
+  const element::FaceQuadrature plane(1, element::FaceRule::Seven);
+  std::vector<double> distances;
+  distances.reserve(pairs.faces.size());
+  for (const auto& [a, b] : pairs.faces) {
+    distances.push_back(
+        distance_of(plane.at(mesh, a, kCentre), plane.at(mesh, b, kCentre))
+            .value);
+  }
+  const auto middle = distances.begin() + std::ssize(distances) / 2;
+  std::nth_element(distances.begin(), middle, distances.end());
+  return *middle;
+}
+
 }  // namespace
 
 ThicknessPairs thickness_pairs(const TetMesh& base) {
@@ -199,12 +214,14 @@ ThicknessPairs thickness_pairs(const TetMesh& base) {
   }
   std::sort(pairs.faces.begin(), pairs.faces.end());
   pairs.least = thinnest_place(base, pairs, 0.0).value;
+  pairs.median = median_distance(base, pairs);
   return pairs;
 }
 
 double usual_sharpness(const ThicknessPairs& pairs) {
   const auto count = static_cast<double>(pairs.faces.size());
-  return std::max(1.0, std::log(count)) / (kBelowLeast * pairs.least);
+  const double least = std::max(pairs.least, kFeather * pairs.median);
+  return std::max(1.0, std::log(count)) / (kBelowLeast * least);
 }
 
 ThinPlace thinnest_place(const TetMesh& mesh, const ThicknessPairs& pairs,

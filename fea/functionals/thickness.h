@@ -18,11 +18,15 @@ namespace meniscus::functionals {
 /// wall.
 struct ThicknessPairs {
   std::vector<std::array<int, 2>> faces;
-  double least = 0.0;  // distance of a pair, at the base design [length]
+  // Distances at the base design [length]. The least may be below 0, at a
+  // feather edge whose two planes cross beside it.
+  double least = 0.0;
+  double median = 0.0;
 };
 
 /// 1 / smoothing of thickness_functional() that keeps its value within 5 % of
-/// `pairs.least` below the least distance, of however many pairs [1/length].
+/// `pairs.least` below the least distance, of however many pairs [1/length]; of
+/// a fiftieth of `pairs.median` where that is more, as at a feather edge.
 double usual_sharpness(const ThicknessPairs& pairs);
 
 /// Ask once, at a model's base design: the same pairs must count in every

@@ -65,6 +65,22 @@ StudyOutcome judged_by(const case_data::Case& input, StudyOutcome found,
   return found;
 }
 
+/// Seeks an answer that near to where the stage starts; beyond the reach of its
+/// mesh on new models, from there.
+void search_near(StudyModels& models, double reach) {
+  using Leave = StudyStage::Leave;
+  models.stage()->conduct(models.may_refreeze() ? Leave::Early : Leave::Late,
+                          reach);
+  if (!models.stage()->stopped_early()) {
+    return;
+  }
+  if (models.refreeze()) {
+    models.conduct();
+  } else {
+    models.stage()->conduct(Leave::Late, reach);
+  }
+}
+
 /// True where the stage is now another's, with another answer.
 bool seek_on_model_before(StudyModels& models) {
   const forward::Evaluation own = models.stage()->start();
@@ -161,12 +177,11 @@ bool judge_answer(StudyModels& models, const DeadlineMonitor& limited) {
     if (!models.go_on_at_answer()) {
       return false;
     }
-    StudyStage& stage = *models.stage();
-    stage.judge(found, models.input());
+    models.stage()->judge(found, models.input());
     if (study.kind == case_data::StudyKind::Sweep) {
       return true;  // its designs are given: there is nothing to go on with
     }
-    const bool kept = all_kept(stage.outcome().constraints);
+    const bool kept = all_kept(models.stage()->outcome().constraints);
     if (all_kept(found.constraints) == kept || !study.refreeze ||
         models.evaluations_left() <= 0 || round >= kReaches.size()) {
       return true;
@@ -175,17 +190,15 @@ bool judge_answer(StudyModels& models, const DeadlineMonitor& limited) {
                            kept ? "kept" : "not kept",
                            kept ? ", and not on that before" : ""));
     const double reach = kReaches[round++];
-    if (search_again(models, [&] {
-          models.stage()->conduct(StudyStage::Leave::Late, reach);
-        })) {
+    if (search_again(models, [&] { search_near(models, reach); })) {
       continue;
     }
-    if (reach < 1.0 && !all_kept(stage.outcome().constraints) &&
+    if (reach < 1.0 && !all_kept(models.stage()->outcome().constraints) &&
         models.evaluations_left() > 0) {
       models.log(
           "nothing near it is kept: the whole of the bounds is searched");
       models.limit_to_what_is_left();
-      stage.conduct(StudyStage::Leave::Late);
+      search_near(models, 1.0);
     }
   }
   return true;

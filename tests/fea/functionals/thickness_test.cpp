@@ -111,6 +111,23 @@ TEST_P(Thickness, FeathersAreThin) {
   EXPECT_LT(functionals::thickness_pairs(feather).least, 0.03);
 }
 
+/// Where the planes of two faces cross beside a feather edge the least distance
+/// is below 0, and the thickness still has a value near it.
+TEST_P(Thickness, FeathersWhosePlanesCrossHaveOne) {
+  const TetMesh plate = of_order(shapes::brick({2.0, 1.0, 0.2}, 8, 4, 1));
+  functionals::ThicknessPairs pairs = functionals::thickness_pairs(plate);
+  EXPECT_NEAR(pairs.median, 0.2, kThicknessRounding);
+  for (const double least : {-0.01, 0.0, 1e-9}) {
+    pairs.least = least;
+    const double sharpness = functionals::usual_sharpness(pairs);
+    ASSERT_GT(sharpness, 0.0);
+    const double value =
+        functionals::thickness_functional(plate, pairs, sharpness).value;
+    EXPECT_LE(value, 0.2);
+    EXPECT_GE(value, 0.2 - 0.05 * 0.02 * 0.2 - kThicknessRounding);
+  }
+}
+
 /// However many pairs there are, and however small the wall.
 TEST_P(Thickness, UsualSharpnessStaysNearTheLeast) {
   for (const int n : {2, 8, 20}) {
