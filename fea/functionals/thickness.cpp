@@ -175,7 +175,9 @@ Distance distance_of(const element::FacePoint& a, const element::FacePoint& b) {
           of_length(2.0 / apart * e + turn * n_a, n_b, b.normal.norm())};
 }
 
-double median_distance(const TetMesh& mesh, const ThicknessPairs& pairs) {
+/// Of each pair, in order [length].
+std::vector<double> distances_of(const TetMesh& mesh,
+                                 const ThicknessPairs& pairs) {
   const element::FaceQuadrature plane(1, element::FaceRule::Seven);
   std::vector<double> distances;
   distances.reserve(pairs.faces.size());
@@ -184,9 +186,7 @@ double median_distance(const TetMesh& mesh, const ThicknessPairs& pairs) {
         distance_of(plane.at(mesh, a, kCentre), plane.at(mesh, b, kCentre))
             .value);
   }
-  const auto middle = distances.begin() + std::ssize(distances) / 2;
-  std::nth_element(distances.begin(), middle, distances.end());
-  return *middle;
+  return distances;
 }
 
 }  // namespace
@@ -213,8 +213,11 @@ ThicknessPairs thickness_pairs(const TetMesh& base) {
                     count));
   }
   std::sort(pairs.faces.begin(), pairs.faces.end());
-  pairs.least = thinnest_place(base, pairs, 0.0).value;
-  pairs.median = median_distance(base, pairs);
+  std::vector<double> distances = distances_of(base, pairs);
+  pairs.least = *std::min_element(distances.begin(), distances.end());
+  const auto middle = distances.begin() + std::ssize(distances) / 2;
+  std::nth_element(distances.begin(), middle, distances.end());
+  pairs.median = *middle;
   return pairs;
 }
 
