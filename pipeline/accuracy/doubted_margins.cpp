@@ -2,10 +2,41 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
+#include "pipeline/accuracy/mesh_errors.h"
+
 namespace meniscus::accuracy {
+
+namespace {
+
+constexpr double kRounding = 1e-6;  // of a bound; as much as a search misses
+// Errors differ between designs: the bound is raised by so much more than one
+// asks for, and by so much at least where a raise was not enough. A wild error
+// must not send the study to designs of no use.
+constexpr double kBeyond = 1.25;
+constexpr double kLeastRaise = 1.02;
+constexpr double kMostRaise = 1.5;
+
+bool is_doubted(const HeldMargin& margin) {
+  // An error that is not known keeps nothing.
+  return !(margin.value - margin.error >=
+           margin.lower - kRounding * std::abs(margin.lower));
+}
+
+/// NaN where the error is the whole margin.
+double wanted_bound(const HeldMargin& margin) {
+  return margin.error < margin.value
+             ? margin.lower +
+                   kBeyond * (margin_to_hold(margin.lower, margin.value,
+                                             margin.error) -
+                              margin.lower)
+             : std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace
 
 bool holds_margin(const case_data::Case& input,
                   const case_data::ConstraintEntry& entry) {
@@ -14,45 +45,53 @@ bool holds_margin(const case_data::Case& input,
          std::isfinite(entry.lower);
 }
 
-std::vector<DoubtedMargin> doubted_margins(const case_data::Case& input,
-                                           const VectorX& responses,
-                                           const VectorX& errors) {
-  std::vector<DoubtedMargin> doubted;
+std::vector<HeldMargin> held_margins(const case_data::Case& input,
+                                     const VectorX& responses,
+                                     const VectorX& errors) {
+  std::vector<HeldMargin> held;
   const auto& constraints = input.study.constraints;
   for (std::size_t k = 0; k < constraints.size(); ++k) {
-    const int response = constraints[k].response;
-    // An error that is not known keeps nothing.
-    if (holds_margin(input, constraints[k]) &&
-        !(responses[response] > errors[response])) {
-      doubted.push_back(
+    if (holds_margin(input, constraints[k])) {
+      const int response = constraints[k].response;
+      held.push_back(
           {.constraint = k,
            .name = input.responses[static_cast<std::size_t>(response)].name,
            .value = responses[response],
            .error = errors[response],
+           .lower = constraints[k].lower,
            .shown = case_data::shown_unit(input, response)});
     }
   }
-  return doubted;
+  return held;
 }
 
-std::string doubt_text(const DoubtedMargin& margin) {
+std::vector<HeldMargin> doubted_margins(const case_data::Case& input,
+                                        const VectorX& responses,
+                                        const VectorX& errors) {
+  std::vector<HeldMargin> margins = held_margins(input, responses, errors);
+  std::erase_if(margins,
+                [](const HeldMargin& margin) { return !is_doubted(margin); });
+  return margins;
+}
+
+std::string doubt_text(const HeldMargin& margin) {
   return std::isfinite(margin.error) ? "the mesh's own error of it is " +
                                            margin.shown.text(margin.error, 2)
                                      : "other facets have no such film";
 }
 
-double raised_bound(const DoubtedMargin& margin, double lower) {
-  // The error falls as the margin grows: far from the collapse another mesh
-  // moves the film less. A wild one must not send the study to designs of no
-  // use.
-  constexpr double kAboveError = 1.25;
-  constexpr double kLeastRaise = 1.25;
-  constexpr double kMostRaise = 1.5;
+double raised_bound(const HeldMargin& margin, double lower) {
   const double held = std::max(margin.value, lower);
-  return std::isfinite(margin.error)
-             ? std::clamp(kAboveError * margin.error, kLeastRaise * held,
-                          kMostRaise * held)
+  const double wanted = wanted_bound(margin);
+  return std::isfinite(wanted)
+             ? std::clamp(wanted, kLeastRaise * held, kMostRaise * held)
              : kMostRaise * held;
+}
+
+double foreseen_bound(const HeldMargin& margin, double lower) {
+  const double wanted = wanted_bound(margin);
+  return std::isfinite(wanted) ? std::clamp(wanted, lower, kMostRaise * lower)
+                               : lower;
 }
 
 }  // namespace meniscus::accuracy

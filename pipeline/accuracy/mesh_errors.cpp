@@ -130,6 +130,20 @@ double finer_film_error(double own, double finer, FilmLaw law) {
   return kSafety * std::abs(own - std::sqrt(limit < 0.0 ? 0.0 : limit));
 }
 
+double margin_to_hold(double lower, double own, double error) {
+  // 1. The change of the square: error = kSafety (own - sqrt(own^2 - change)),
+  // the whole square where no film is left.
+  const double limit = std::max(0.0, own - error / kSafety);
+  const double change = own * own - limit * limit;
+  // 2. x - kSafety (x - sqrt(x^2 - change)) = lower, of x the larger root: with
+  // the safety S (2 S - 1) x^2 - 2 (S - 1) lower x - lower^2 - S^2 change = 0.
+  const double a = 2.0 * kSafety - 1.0;
+  const double b = (kSafety - 1.0) * lower;
+  return (b +
+          std::sqrt(b * b + a * (lower * lower + kSafety * kSafety * change))) /
+         a;
+}
+
 namespace {
 
 /// What the film's own finer facets say of a response; NaN where they say

@@ -47,6 +47,11 @@ enum class FilmLaw { Smooth, Root };
 /// one is.
 double finer_film_error(double own, double finer, FilmLaw law);
 
+/// The margin to collapse whose value less its error is `lower`, from one whose
+/// error is known: in designs near each other halved facets change its square
+/// by the same.
+double margin_to_hold(double lower, double own, double error);
+
 /// Of each response; figures of films by their finer film where it is there,
 /// all others by the meshes; `dual`: of the elements alone where estimated (NaN
 /// where not; empty: none), no bound is below it. `peaks`: by load case, for

@@ -21,14 +21,21 @@ bool holds_margins(const case_data::Case& working) {
 
 std::vector<RaisedMargin> raise_margins(const case_data::Case& input,
                                         const VectorX& responses,
-                                        const VectorX& errors,
+                                        const VectorX& errors, Raise raise,
                                         case_data::Case& working) {
+  const bool doubted = raise == Raise::Doubted;
   std::vector<RaisedMargin> raised;
-  for (accuracy::DoubtedMargin& margin :
-       accuracy::doubted_margins(input, responses, errors)) {
+  for (accuracy::HeldMargin& margin :
+       doubted ? accuracy::doubted_margins(input, responses, errors)
+               : accuracy::held_margins(input, responses, errors)) {
     double& lower = working.study.constraints[margin.constraint].lower;
-    if (lower > 0.0) {
-      lower = accuracy::raised_bound(margin, lower);
+    if (!(lower > 0.0)) {
+      continue;
+    }
+    const double bound = doubted ? accuracy::raised_bound(margin, lower)
+                                 : accuracy::foreseen_bound(margin, lower);
+    if (bound > lower) {
+      lower = bound;
       raised.push_back({.margin = std::move(margin), .lower = lower});
     }
   }
@@ -40,19 +47,24 @@ void doubt_margins(const case_data::Case& input, RunResult& result) {
       result.response_errors.size() == 0) {
     return;
   }
-  for (const accuracy::DoubtedMargin& margin : accuracy::doubted_margins(
+  for (const accuracy::HeldMargin& margin : accuracy::doubted_margins(
            input, result.best->responses, result.response_errors)) {
     for (Constraint& constraint : result.constraints) {
       if (constraint.name == margin.name) {
         constraint.satisfied = false;
       }
     }
+    const bool may_be_lost = !(margin.value > margin.error);
     const std::string note = fmt::format(
-        "'{}' is {} and {}: the film may be there on this mesh alone, so "
-        "the bound is not kept; raise it{}, or shorten resolution.fea",
+        "'{}' is {} and {}: {}, so the bound is not kept; raise it{}, or "
+        "shorten resolution.fea",
         margin.name, margin.shown.text(margin.value, 2),
         accuracy::doubt_text(margin),
-        std::isfinite(margin.error) ? " above the error" : "");
+        may_be_lost
+            ? "the film may be there on this mesh alone"
+            : "it may miss its bound of " + margin.shown.text(margin.lower, 2) +
+                  " on shorter edges",
+        std::isfinite(margin.error) ? " by the error" : "");
     result.message += ". " + note;
     result.warnings.push_back(note);
     if (result.status == RunStatus::Converged) {

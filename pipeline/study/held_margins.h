@@ -1,6 +1,6 @@
-/// Margins to collapse that a study holds, where the mesh's own error of them
-/// makes them nothing: the film may be there on one mesh alone (internal to
-/// run_study()).
+/// Margins to collapse that a study holds by more than their bounds, for the
+/// mesh's own error of them: else the film may be there on one mesh alone
+/// (internal to run_study()).
 #pragma once
 
 #include <vector>
@@ -19,20 +19,24 @@ bool holds_margins(const case_data::Case& working);
 inline constexpr const char* kHeldAbove = ", above its bound";
 
 struct RaisedMargin {
-  accuracy::DoubtedMargin margin;
-  double lower = 0.0;  // its bound, above the margin's error
+  accuracy::HeldMargin margin;
+  double lower = 0.0;  // its bound, above the case's
 };
 
-/// Raises the bounds in `working` of those margins of an answer that `errors`
-/// (of its responses, not a number where no other mesh has a film) make
-/// doubtful.
+enum class Raise {
+  Doubted,  // of an answer: those that it does not keep with their errors
+  Foreseen  // of a design from which a search goes on: all, by their errors
+};
+
+/// Raises the bounds of margins in `working`, by `errors` of the design's
+/// responses (not a number where no other mesh has a film).
 std::vector<RaisedMargin> raise_margins(const case_data::Case& input,
                                         const VectorX& responses,
-                                        const VectorX& errors,
+                                        const VectorX& errors, Raise raise,
                                         case_data::Case& working);
 
-/// A margin of the result that its own error makes nothing is no margin: its
-/// bound is not kept.
+/// A margin of the result that misses its bound by its own error does not keep
+/// it.
 void doubt_margins(const case_data::Case& input, RunResult& result);
 
 }  // namespace meniscus::study

@@ -159,7 +159,8 @@ StudyOutcome without_own_mesh(StudyOutcome found) {
   return found;
 }
 
-bool judge_answer(StudyModels& models, const DeadlineMonitor& limited) {
+bool judge_answer(StudyModels& models, const DeadlineMonitor& limited,
+                  const std::function<void()>& hold_margins) {
   const case_data::StudyEntry& study = models.input().study;
   if (study.kind == case_data::StudyKind::Pareto) {
     return true;
@@ -189,6 +190,7 @@ bool judge_answer(StudyModels& models, const DeadlineMonitor& limited) {
     models.log(fmt::format("{} on a mesh of its own{}: the study goes on there",
                            kept ? "kept" : "not kept",
                            kept ? ", and not on that before" : ""));
+    hold_margins();
     const double reach = kReaches[round++];
     if (search_again(models, [&] { search_near(models, reach); })) {
       continue;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <new>
 #include <optional>
 
@@ -37,9 +38,8 @@ namespace {
 // under way is given up.
 constexpr double kLateness = 0.5;
 
-// Bounds of margins to collapse are raised towards their errors so often, to
-// half as much again at most; a search that ends so near to one keeps the
-// margin.
+// Bounds of margins to collapse are raised for their errors so often; a search
+// that ends so near to one keeps the margin.
 constexpr int kMostRaises = 5;
 constexpr double kRaisedBoundMissed = 1e-2;
 
@@ -102,7 +102,10 @@ class StudyRun {
   }
   std::optional<accuracy::FinerFilm> finer_film();
   std::optional<VectorX> errors_of_margins(bool proven);
+  bool may_raise_margins();
+  bool raise_margins_by(const VectorX& errors, Raise raise);
   bool raise_doubted_margins(bool proven);
+  void foresee_margins();
   void take_outcome();
   void judge_by_own_bounds();
   bool finish_best();
@@ -136,7 +139,8 @@ class StudyRun {
   StudyModels models_;
   std::vector<std::string> left_out_;
   Timer timer_;
-  bool raised_ = false;  // bounds of margins, above those of the input
+  // Warnings of the bounds of margins that were raised, by constraint.
+  std::map<std::size_t, std::string> held_above_;
   // The last best design whose film was put on finer facets, of that model.
   struct OnFinerFacets {
     std::string model;
@@ -208,47 +212,61 @@ std::optional<VectorX> StudyRun::errors_of_margins(bool proven) {
       accuracy::response_errors(input_, alone, VectorX()));
 }
 
+bool StudyRun::may_raise_margins() {
+  return input_.study.refreeze && options_.estimate_errors &&
+         holds_margins(models_.working()) && !limited_.expired() &&
+         models_.evaluations_left() > 0;
+}
+
+/// True where a bound was raised.
+bool StudyRun::raise_margins_by(const VectorX& errors, Raise raise) {
+  const std::vector<RaisedMargin> raised =
+      raise_margins(input_, best_responses(), errors, raise, models_.working());
+  for (const auto& [margin, lower] : raised) {
+    const std::string doubt = accuracy::doubt_text(margin);
+    const std::string value = margin.shown.text(margin.value, 3);
+    const std::string held = margin.shown.text(lower, 3);
+    models_.log(
+        fmt::format("'{}' is {}, and {}: the study goes on and holds it at {}",
+                    margin.name, value, doubt, held));
+    held_above_[margin.constraint] = fmt::format(
+        "'{}' was {} at an earlier design, and {}: it is held at {} or more{}",
+        margin.name, value, doubt, held, kHeldAbove);
+  }
+  return !raised.empty();
+}
+
 /// True where a margin's bound was raised, for the study to go on with: the
-/// answer's own margin is within the mesh's error of it, so that the film may
-/// be there on this mesh alone, or another mesh has none.
+/// answer's own margin misses it by the mesh's error, so that on shorter edges
+/// it may not be kept, or another mesh has no film.
 bool StudyRun::raise_doubted_margins(bool proven) {
-  const StudyOutcome& outcome = stage().outcome();
-  if (!input_.study.refreeze || !options_.estimate_errors ||
-      !holds_margins(models_.working()) || !all_kept(outcome.constraints) ||
-      limited_.expired() || models_.evaluations_left() <= 0 ||
+  if (!may_raise_margins() || !all_kept(stage().outcome().constraints) ||
       (!proven && !models_.lost_film())) {
     return false;
   }
   const std::optional<VectorX> errors = errors_of_margins(proven);
-  if (!errors) {
-    return false;
+  return errors && raise_margins_by(*errors, Raise::Doubted);
+}
+
+/// Before a search goes on from an answer's own mesh: else it would end on the
+/// margin's bound, and another had to follow.
+void StudyRun::foresee_margins() {
+  if (may_raise_margins()) {
+    if (const std::optional<VectorX> errors = errors_of_margins(true)) {
+      raise_margins_by(*errors, Raise::Foreseen);
+    }
   }
-  const std::vector<RaisedMargin> raised = raise_margins(
-      input_, models_.answer().responses, *errors, models_.working());
-  for (const auto& [margin, lower] : raised) {
-    const std::string doubt = accuracy::doubt_text(margin);
-    const std::string value = margin.shown.text(margin.value, 2);
-    const std::string held = margin.shown.text(lower, 2);
-    models_.log(
-        fmt::format("'{}' is {}, and {}: the study goes on and holds it at {}",
-                    margin.name, value, doubt, held));
-    models_.warn(fmt::format(
-        "'{}' was {} at a first answer, and {}: it is held at {} or more{}",
-        margin.name, value, doubt, held, kHeldAbove));
-  }
-  if (raised.empty()) {
-    return false;
-  }
-  raised_ = true;
-  return true;
 }
 
 void StudyRun::conduct_study() {
+  const auto judge = [&] {
+    return judge_answer(models_, limited_, [&] { foresee_margins(); });
+  };
   models_.conduct();
-  bool proven = judge_answer(models_, limited_);
+  bool proven = judge();
   for (int k = 0; k < kMostRaises && raise_doubted_margins(proven); ++k) {
     search_again(models_, [&] { models_.conduct(); });
-    proven = judge_answer(models_, limited_);
+    proven = judge();
   }
   if (!proven) {
     stage().leave(without_own_mesh(stage().outcome()));
@@ -522,6 +540,9 @@ void StudyRun::combine_errors(const accuracy::MeshSequence& meshes) {
 }
 
 void StudyRun::warn() {
+  for (const auto& [constraint, warning] : held_above_) {
+    result_.warnings.push_back(warning);
+  }
   if (!left_out_.empty()) {
     result_.warnings.push_back(
         fmt::format("the time limit of {:g} s left no time for: {}",
@@ -600,7 +621,7 @@ bool StudyRun::study_in_time() {
 RunResult StudyRun::run() {
   if (study_in_time()) {
     if (finish_best()) {
-      if (raised_) {
+      if (!held_above_.empty()) {
         judge_by_own_bounds();
       }
       if (options_.answered) {

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "pipeline/accuracy/mesh_errors.h"
 #include "pipeline/study/study_records.h"
 #include "tests/support/case_text.h"
 
@@ -39,31 +40,59 @@ case_data::Case with_margins() {
   return input;
 }
 
-TEST(DoubtedMargins, AreThoseBelowTheirErrorOrWithoutOne) {
+TEST(DoubtedMargins, AreThoseThatLessTheirErrorMissTheirBound) {
   const case_data::Case input = with_margins();
   const VectorX values = Eigen::Vector4d(3e-4, 2e-4, 2e-4, 0.5);
-  const VectorX errors = Eigen::Vector4d(2.9e-4, 2.1e-4, kNaN, 1.0);
+  // Above its bound by twice its error, by less than it, and by no known one.
+  const VectorX errors = Eigen::Vector4d(1e-4, 1.1e-4, kNaN, 1.0);
   const auto doubted = accuracy::doubted_margins(input, values, errors);
   ASSERT_EQ(doubted.size(), 2);
   EXPECT_EQ(doubted[0].constraint, 2);
   EXPECT_EQ(doubted[0].name, "tight");
-  EXPECT_THAT(accuracy::doubt_text(doubted[0]), HasSubstr("0.00021"));
+  EXPECT_EQ(doubted[0].lower, 1e-4);
+  EXPECT_THAT(accuracy::doubt_text(doubted[0]), HasSubstr("0.00011"));
   EXPECT_EQ(doubted[1].constraint, 3);
   EXPECT_THAT(accuracy::doubt_text(doubted[1]),
               HasSubstr("other facets have no"));
 }
 
+TEST(DoubtedMargins, AreNotThoseOnTheirBoundWithoutAnError) {
+  const case_data::Case input = with_margins();
+  const double on_bound = 1e-4 * (1.0 - 1e-7);
+  const VectorX values = Eigen::Vector4d(on_bound, on_bound, on_bound, 0.5);
+  EXPECT_TRUE(
+      accuracy::doubted_margins(input, values, VectorX::Zero(4)).empty());
+}
+
 TEST(DoubtedMargins, AreHeldAboveTheirErrorAndTheirBound) {
-  const accuracy::DoubtedMargin known{.value = 2e-4, .error = 3e-4};
-  EXPECT_GT(accuracy::raised_bound(known, 1e-4), known.error);
+  const accuracy::HeldMargin known{
+      .value = 2e-4, .error = 1.5e-4, .lower = 1e-4};
+  const double raised = accuracy::raised_bound(known, 1e-4);
+  EXPECT_GT(raised, known.value);
+  EXPECT_GT(raised,
+            accuracy::margin_to_hold(known.lower, known.value, known.error));
+  EXPECT_LT(raised, 1.5 * known.value);
   EXPECT_GT(accuracy::raised_bound(known, 5e-4), 5e-4);
   // A wild error sends no study away at once.
-  accuracy::DoubtedMargin wild = known;
+  accuracy::HeldMargin wild = known;
   wild.error = 100.0 * wild.value;
   EXPECT_DOUBLE_EQ(accuracy::raised_bound(wild, 1e-4), 1.5 * wild.value);
-  const accuracy::DoubtedMargin lost{.value = 2e-4, .error = kNaN};
+  const accuracy::HeldMargin lost{.value = 2e-4, .error = kNaN, .lower = 1e-4};
   EXPECT_GT(accuracy::raised_bound(lost, 1e-4), lost.value);
   EXPECT_LT(accuracy::raised_bound(lost, 1e-4), kInfinity);
+}
+
+TEST(DoubtedMargins, AreForeseenFromAbove) {
+  const accuracy::HeldMargin far{.value = 1e-3, .error = 1e-5, .lower = 2e-4};
+  const double foreseen = accuracy::foreseen_bound(far, far.lower);
+  EXPECT_GT(foreseen, accuracy::margin_to_hold(2e-4, 1e-3, 1e-5));
+  EXPECT_LT(foreseen, 1.5 * far.lower);
+  EXPECT_DOUBLE_EQ(accuracy::foreseen_bound(far, 5e-4), 5e-4);
+  for (const double error : {2e-3, kNaN}) {
+    accuracy::HeldMargin unknown = far;
+    unknown.error = error;
+    EXPECT_DOUBLE_EQ(accuracy::foreseen_bound(unknown, 2e-4), 2e-4);
+  }
 }
 
 TEST(Describe, NamesWhatTheStudyAsksForWhereThereIsMuch) {

@@ -171,5 +171,26 @@ TEST(FinerFilmError, OfAMarginThatEndsIsMoreThanTheMargin) {
   }
 }
 
+// Where the square of every margin changes by the same, the one to hold is just
+// kept with its error.
+TEST(MarginToHold, LessItsErrorIsTheBound) {
+  std::mt19937 random(20261127);
+  std::uniform_real_distribution<double> numbers(0.0, 1.0);
+  for (int k = 0; k < 1000; ++k) {
+    const double lower = numbers(random);
+    const double own = 0.1 + numbers(random);
+    const double change = 0.7 * own * own * numbers(random);
+    const auto error_of = [&](double margin) {
+      return finer_film_error(
+          margin, std::sqrt(margin * margin - 0.75 * change), FilmLaw::Root);
+    };
+    const double held = margin_to_hold(lower, own, error_of(own));
+    EXPECT_NEAR(held - error_of(held), lower, 1e-12);
+  }
+  // Of one that ends on finer facets no more is known than its square.
+  EXPECT_DOUBLE_EQ(margin_to_hold(0.5, 1.0, 7.0),
+                   margin_to_hold(0.5, 1.0, 1.5));
+}
+
 }  // namespace
 }  // namespace meniscus::mesh_errors_test
