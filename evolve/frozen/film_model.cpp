@@ -30,6 +30,7 @@ constexpr std::array<int, 2> kParts = {1, 4};
 /// One step that needs more iterations than this is checked against parts:
 /// the film may have slid to another equilibrium.
 constexpr int kManyIterations = 15;
+constexpr double kOtherStart = 0.8;  // x edge, of other first facets
 
 films::FilmTargets blend(const films::FilmTargets& from,
                          const films::FilmTargets& to, double t) {
@@ -196,58 +197,65 @@ void FilmModel::Impl::find_reference(const films::FilmSystem& initial,
     return;
   }
   if (options.start != nullptr && !initial.keep_facets) {
-    settle_reference(*options.start, 0, initial, options, settle);
+    settle_reference(*options.start, options.edge, 0, initial, options, settle);
     return;
   }
   const int halvings = start::start_halvings(initial, options.edge);
-  find_reference_from(halvings, initial, options, settle);
+  find_reference_from(std::ldexp(options.edge, halvings), halvings, initial,
+                      options, settle);
   const auto tears = [this] {
     return reference.failure &&
            reference.failure->kind != FailureKind::FilmUnstable;
   };
-  if (!tears() || halvings == 0 || initial.keep_facets) {
+  if (!tears() || initial.keep_facets) {
     return;
   }
-  // Coarse facets may fold where rims are not much larger than they: once more
-  // without them.
-  const films::FilmComplex coarse = complex;
-  const films::FilmComplex coarse_meshed = meshed_complex;
-  const std::vector<Edge> coarse_parents = parents;
-  const std::size_t coarse_near = near_parents;
+  // Coarse facets may fold where rims are not much larger than they, and any
+  // by bad luck: once more without them, and from others.
+  const films::FilmComplex first = complex;
+  const films::FilmComplex first_meshed = meshed_complex;
+  const std::vector<Edge> first_parents = parents;
+  const std::size_t first_near = near_parents;
   const settle::FilmState failed = reference;
-  const double coarse_edge = start_edge;
-  find_reference_from(0, initial, options, settle);
-  if (tears()) {
-    complex = coarse;
-    meshed = coarse_meshed.mesh;
-    meshed_complex = coarse_meshed;
-    parents = coarse_parents;
-    near_parents = coarse_near;
-    reference = failed;
-    start_edge = coarse_edge;
-    energy.reset();
+  const double first_edge = start_edge;
+  for (const double factor : {1.0, kOtherStart}) {
+    if (halvings == 0 && factor == 1.0) {
+      continue;  // that was the first
+    }
+    find_reference_from(factor * options.edge, 0, initial, options, settle);
+    if (!tears()) {
+      return;
+    }
   }
+  complex = first;
+  meshed = first_meshed.mesh;
+  meshed_complex = first_meshed;
+  parents = first_parents;
+  near_parents = first_near;
+  reference = failed;
+  start_edge = first_edge;
+  energy.reset();
 }
 
-void FilmModel::Impl::find_reference_from(int halvings,
+void FilmModel::Impl::find_reference_from(double edge, int halvings,
                                           const films::FilmSystem& initial,
                                           const FilmModelOptions& options,
                                           const settle::SettleOptions& settle) {
   Monitor& monitor =
       options.monitor != nullptr ? *options.monitor : silent_monitor();
   monitor.progress({"film", "building the start", 0.0});
-  start_edge = std::ldexp(options.edge, halvings);
-  settle_reference(start::build_start(initial, start_edge), halvings, initial,
+  settle_reference(start::build_start(initial, edge), edge, halvings, initial,
                    options, settle);
 }
 
-void FilmModel::Impl::settle_reference(films::FilmComplex first, int halvings,
+void FilmModel::Impl::settle_reference(films::FilmComplex first, double edge,
+                                       int halvings,
                                        const films::FilmSystem& initial,
                                        const FilmModelOptions& options,
                                        const settle::SettleOptions& settle) {
   Monitor& monitor =
       options.monitor != nullptr ? *options.monitor : silent_monitor();
-  start_edge = std::ldexp(options.edge, halvings);
+  start_edge = edge;
   complex = std::move(first);
   parents.clear();
   near_parents = 0;
@@ -272,9 +280,9 @@ void FilmModel::Impl::refine_and_settle(int levels, bool may_groom,
       settle.monitor != nullptr ? *settle.monitor : silent_monitor();
   const auto settle_level = [&] {
     energy.emplace(complex);
-    reference =
-        settle::settle_in_normals(*energy, complex, energy::targets_of(complex),
-                                  complex.mesh.points, settle);
+    reference = settle::settle_past_saddles(*energy, complex,
+                                            energy::targets_of(complex),
+                                            complex.mesh.points, settle);
     complex.mesh.points = reference.points;
   };
   for (int level = 0; level < levels; ++level) {

@@ -45,12 +45,14 @@ struct FilmModel::Impl {
   void find_reference(const films::FilmSystem& initial,
                       const FilmModelOptions& options,
                       const settle::SettleOptions& settle);
-  /// The same, from first facets whose edges are options.edge x 2^halvings.
-  void find_reference_from(int halvings, const films::FilmSystem& initial,
+  /// The same, from first facets of that edge, coarse ones where halvings are
+  /// to come.
+  void find_reference_from(double edge, int halvings,
+                           const films::FilmSystem& initial,
                            const FilmModelOptions& options,
                            const settle::SettleOptions& settle);
   /// The same from `first`, of that many halvings to come.
-  void settle_reference(films::FilmComplex first, int halvings,
+  void settle_reference(films::FilmComplex first, double edge, int halvings,
                         const films::FilmSystem& initial,
                         const FilmModelOptions& options,
                         const settle::SettleOptions& settle);

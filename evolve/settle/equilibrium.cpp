@@ -1,6 +1,7 @@
 #include "evolve/settle/equilibrium.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -17,6 +18,7 @@ constexpr double kNearRest = 1e-3;   // of the residual / (tension x edge)
 constexpr double kUnresolved = 2.0;  // neck below this many edges: pinching
 constexpr double kThinned = 0.2;     // a settled film's neck / the usual one
 constexpr double kThinning = 0.5;    // the same where no equilibrium was found
+constexpr std::array<double, 2> kOffSaddle = {0.1, 0.5};  // x mean edge
 
 std::string place(const Vec3& p) {
   return fmt::format("({:.4g}, {:.4g}, {:.4g})", p.x(), p.y(), p.z());
@@ -37,6 +39,11 @@ NewtonResult along_its_normals(const energy::FilmEnergy& energy,
   }
   found.iterations += near.iterations;
   return found;
+}
+
+bool is_saddle(const FilmState& state) {
+  return state.failure && state.failure->kind == FailureKind::FilmUnstable &&
+         state.report.index == 1;
 }
 
 FilmState settle(const energy::FilmEnergy& energy,
@@ -220,6 +227,41 @@ FilmState settle_in_normals(const energy::FilmEnergy& energy,
              {}, usual_neck, options, DirectionRule::CurrentNormals);
   state.heights = VectorX::Zero(energy.unknowns());
   return state;
+}
+
+FilmState settle_past_saddles(const energy::FilmEnergy& energy,
+                              const films::FilmComplex& complex,
+                              const films::FilmTargets& targets,
+                              const Points& start, const SettleOptions& options,
+                              double usual_neck) {
+  const auto settle_from = [&](const Points& points) {
+    return settle_in_normals(energy, complex, targets, points, options,
+                             usual_neck);
+  };
+  FilmState saddle = settle_from(start);
+  if (!is_saddle(saddle)) {
+    return saddle;
+  }
+  VectorX pressure(energy.functionals());
+  for (int b = 0; b < energy.functionals(); ++b) {
+    pressure[b] = saddle.report.bodies[b].pressure;
+  }
+  const VectorX mode =
+      lowest_mode_of(energy, targets, saddle.points, pressure).mode;
+  const Points directions = energy.space().directions(saddle.points);
+  const double edge = energy.mean_edge(saddle.points);
+  for (const double off : kOffSaddle) {
+    for (const double height : {off * edge, -off * edge}) {
+      FilmState beside = settle_from(
+          energy.space().moved(saddle.points, directions, height * mode));
+      saddle.report.iterations += beside.report.iterations;
+      if (!beside.failure) {
+        beside.report.iterations = saddle.report.iterations;
+        return beside;
+      }
+    }
+  }
+  return saddle;
 }
 
 }  // namespace meniscus::settle

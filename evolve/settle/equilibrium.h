@@ -32,6 +32,15 @@ FilmState settle_in_normals(const energy::FilmEnergy& energy,
                             const Points& start, const SettleOptions& options,
                             double usual_neck = 0.0);
 
+/// The same; from a saddle with one falling direction on to a film beside it:
+/// at a fold one side falls to the film and the other tears. The saddle where
+/// neither side settles.
+FilmState settle_past_saddles(const energy::FilmEnergy& energy,
+                              const films::FilmComplex& complex,
+                              const films::FilmTargets& targets,
+                              const Points& start, const SettleOptions& options,
+                              double usual_neck = 0.0);
+
 /// Lowest mode of a film at `points` (more may follow its vertices: only the
 /// first are read) under the given pressures, by a factorisation.
 energy::LowestMode lowest_mode_of(const energy::FilmEnergy& energy,

@@ -97,8 +97,8 @@ FilmState settle_with_contacts(films::FilmComplex& complex, double usual_neck,
   for (int round = 0;; ++round) {
     const energy::FilmEnergy energy(complex);
     FilmState state =
-        settle_in_normals(energy, complex, energy::targets_of(complex),
-                          complex.mesh.points, options, usual_neck);
+        settle_past_saddles(energy, complex, energy::targets_of(complex),
+                            complex.mesh.points, options, usual_neck);
     steps += state.report.iterations;
     complex.mesh.points = state.points;
     if (!has_contacts(complex) || round == kContactRounds) {

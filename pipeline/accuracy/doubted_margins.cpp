@@ -19,6 +19,7 @@ constexpr double kRounding = 1e-6;  // of a bound; as much as a search misses
 constexpr double kBeyond = 1.25;
 constexpr double kLeastRaise = 1.02;
 constexpr double kMostRaise = 1.5;
+constexpr double kNear = 2.0;  // x its bound; a margin above may stay there
 
 bool is_doubted(const HeldMargin& margin) {
   // An error that is not known keeps nothing.
@@ -89,7 +90,8 @@ double raised_bound(const HeldMargin& margin, double lower) {
 }
 
 double foreseen_bound(const HeldMargin& margin, double lower) {
-  const double wanted = wanted_bound(margin);
+  const double wanted =
+      margin.value < kNear * lower ? wanted_bound(margin) : lower;
   return std::isfinite(wanted) ? std::clamp(wanted, lower, kMostRaise * lower)
                                : lower;
 }

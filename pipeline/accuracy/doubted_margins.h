@@ -43,9 +43,8 @@ std::string doubt_text(const HeldMargin& margin);
 /// on other facets.
 double raised_bound(const HeldMargin& margin, double lower);
 
-/// The same before the search has come near: from a margin that may be far
-/// above its bound, no less than `lower`, and that where its error says
-/// nothing.
+/// The same of a margin that may keep it, before the search goes on: `lower`
+/// where it is far above, or its error says nothing.
 double foreseen_bound(const HeldMargin& margin, double lower);
 
 }  // namespace meniscus::accuracy

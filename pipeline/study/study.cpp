@@ -230,7 +230,8 @@ bool StudyRun::raise_margins_by(const VectorX& errors, Raise raise) {
         fmt::format("'{}' is {}, and {}: the study goes on and holds it at {}",
                     margin.name, value, doubt, held));
     held_above_[margin.constraint] = fmt::format(
-        "'{}' was {} at an earlier design, and {}: it is held at {} or more{}",
+        "'{}' was {} at an earlier design, and {}: the search held it at {} or "
+        "more{}",
         margin.name, value, doubt, held, kHeldAbove);
   }
   return !raised.empty();

@@ -237,7 +237,7 @@ class FilmMargins(ProgramTest):
         done, result = self.minimum(RAISED, "raised")
         self.assertTrue(all(c["satisfied"]
                             for c in result["constraints"].values()))
-        self.assertIn("it is held at", " ".join(result["warnings"]))
+        self.assertIn("the search held it at", " ".join(result["warnings"]))
         self.expect(done, 0)
 
     def test_a_family_names_the_margins_that_it_held_higher(self):

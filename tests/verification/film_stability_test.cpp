@@ -27,10 +27,17 @@ test_films::TubeSpec tube(double length) {
           .rows = static_cast<int>(std::lround(4.0 * length))};
 }
 
-settle::FilmReport at_pressure(double length) {
+/// Of the equilibrium that Newton's method ends at, saddles too.
+settle::FilmState resting_at(const films::FilmComplex& start) {
+  const energy::FilmEnergy energy(start);
+  return settle::settle_in_normals(energy, start, energy::targets_of(start),
+                                   start.mesh.points, {});
+}
+
+films::FilmComplex tube_at_pressure(double length) {
   test_films::TubeSpec spec = tube(length);
   spec.pressure = test_films::prism_pressure(spec);
-  return report_of(test_films::tube_start(spec));
+  return test_films::tube_start(spec);
 }
 
 settle::FilmReport at_volume(double length) {
@@ -50,17 +57,25 @@ settle::FilmReport catenoid_between(double spacing) {
   return report_of(start);
 }
 
-// Limit pi at fixed pressure. Beyond it the prism rests as a saddle.
+// Limit pi at fixed pressure. Beyond it the prism rests as a saddle, and beside
+// it lies a film of less energy at that pressure.
 TEST(FilmStability, CylinderAtFixedPressure) {
   for (const double length : {2.0, 3.0}) {
-    const settle::FilmReport report = at_pressure(length);
+    const settle::FilmReport report = report_of(tube_at_pressure(length));
     EXPECT_EQ(report.index, 0) << length;
     EXPECT_GT(report.min_eigenvalue, 0.0) << length;
     EXPECT_EQ(report.verdict, "stable") << length;
   }
-  const settle::FilmReport beyond = at_pressure(3.3);
+  const films::FilmComplex longer = tube_at_pressure(3.3);
+  const settle::FilmReport beyond = resting_at(longer).report;
   EXPECT_EQ(beyond.index, 1) << beyond.verdict;
   EXPECT_LT(beyond.min_eigenvalue, 0.0);
+  const settle::FilmReport beside = report_of(longer);
+  EXPECT_EQ(beside.index, 0) << beside.verdict;
+  const auto enthalpy = [](const settle::FilmReport& film) {
+    return film.energy - film.bodies[0].pressure * film.bodies[0].volume;
+  };
+  EXPECT_LT(enthalpy(beside), enthalpy(beyond));
 }
 
 // Limit 2 pi at fixed volume (Plateau, Rayleigh).
@@ -80,10 +95,21 @@ TEST(FilmStability, SymmetricSaddles) {
   const settle::FilmReport tube = report_of(test_films::long_tube_saddle());
   EXPECT_EQ(tube.index, 1) << tube.verdict;
   const settle::FilmReport catenoid =
-      report_of(test_films::thin_catenoid_saddle());
+      resting_at(test_films::thin_catenoid_saddle()).report;
   EXPECT_EQ(catenoid.index, 1) << catenoid.verdict;
   EXPECT_NEAR(0.5 * catenoid.smallest_neck,
               test_films::thin_catenoid(1.0, 1.0).waist, 0.01);
+}
+
+// Of the two catenoids between two rings the thin one is the saddle: beside it
+// lies the other, and on its other side nothing.
+TEST(FilmStability, FromTheThinCatenoidToTheStableOne) {
+  const settle::FilmReport film = report_of(test_films::thin_catenoid_saddle());
+  EXPECT_EQ(film.verdict, "stable");
+  const test_films::Catenoid stable = test_films::catenoid(1.0, 1.0);
+  EXPECT_NEAR(0.5 * film.smallest_neck, stable.waist, 0.02);
+  EXPECT_NEAR(film.area, stable.area, 0.02 * stable.area);
+  EXPECT_LT(film.area, test_films::thin_catenoid(1.0, 1.0).area);
 }
 
 // Found at 1.31, none at 1.34 (limit 1.32548).

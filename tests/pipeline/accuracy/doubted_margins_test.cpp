@@ -1,6 +1,7 @@
 #include "pipeline/accuracy/doubted_margins.h"
 
 #include <limits>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -82,16 +83,18 @@ TEST(DoubtedMargins, AreHeldAboveTheirErrorAndTheirBound) {
   EXPECT_LT(accuracy::raised_bound(lost, 1e-4), kInfinity);
 }
 
-TEST(DoubtedMargins, AreForeseenFromAbove) {
-  const accuracy::HeldMargin far{.value = 1e-3, .error = 1e-5, .lower = 2e-4};
-  const double foreseen = accuracy::foreseen_bound(far, far.lower);
-  EXPECT_GT(foreseen, accuracy::margin_to_hold(2e-4, 1e-3, 1e-5));
-  EXPECT_LT(foreseen, 1.5 * far.lower);
-  EXPECT_DOUBLE_EQ(accuracy::foreseen_bound(far, 5e-4), 5e-4);
-  for (const double error : {2e-3, kNaN}) {
-    accuracy::HeldMargin unknown = far;
-    unknown.error = error;
-    EXPECT_DOUBLE_EQ(accuracy::foreseen_bound(unknown, 2e-4), 2e-4);
+TEST(DoubtedMargins, AreForeseenWhereTheyAreNearTheirBound) {
+  const accuracy::HeldMargin near{.value = 3e-4, .error = 3e-5, .lower = 2e-4};
+  const double foreseen = accuracy::foreseen_bound(near, near.lower);
+  EXPECT_GT(foreseen, accuracy::margin_to_hold(2e-4, 3e-4, 3e-5));
+  EXPECT_LT(foreseen, 1.5 * near.lower);
+  EXPECT_DOUBLE_EQ(accuracy::foreseen_bound(near, 5e-4), 5e-4);
+  for (const auto& [value, error] :
+       {std::pair{3e-4, 2e-3}, {3e-4, kNaN}, {1e-3, 1e-4}}) {
+    accuracy::HeldMargin other = near;
+    other.value = value;
+    other.error = error;
+    EXPECT_DOUBLE_EQ(accuracy::foreseen_bound(other, 2e-4), 2e-4);
   }
 }
 
