@@ -1,0 +1,71 @@
+#include "pipeline/study/own_mesh.h"
+
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/case_text.h"
+#include "tests/support/temp_folder.h"
+
+namespace meniscus::own_mesh_test {
+namespace {
+
+/// A strut whose head is shifted along x, farther than a mesh follows, for the
+/// least centre of mass above a bound.
+case_data::Case leaning_strut(double least_centre) {
+  std::string text = changed(strut(), "[curves.base]",
+                             "[design.lean]\ninitial = 0\nbounds = [-60, 60]\n"
+                             "\n[curves.base]");
+  text = changed(text, "center = [0, 0, \"length\"]",
+                 "center = [\"lean\", 0, \"length\"]");
+  text = changed(text, "fea = 6.0\nfilm = 3.0", "fea = 9.0\nfilm = 4.5");
+  text = text.substr(0, text.find("[responses.mass]")) +
+         "[responses.centre]\nkind = \"centre_of_mass\"\n"
+         "direction = [1, 0, 0]\n\n"
+         "[study]\nkind = \"minimize\"\nobjective = \"centre\"\n"
+         "constraints = [{ response = \"centre\", min = " +
+         std::to_string(least_centre) + " }]\n";
+  return *reader::read_case_text(text, "case.toml").input;
+}
+
+// Seeking a bound that cannot be kept, the first search ends as far to the
+// right as may be; the one from the mesh made there has to end far to the left.
+TEST(OwnMesh, ASearchThatLeavesItsReachGoesOnOnNewModels) {
+  constexpr double kLeast = -20.0;
+  const case_data::Case input = leaning_strut(kLeast);
+  const TempFolder folder;
+  store::StudyStore store = store::StudyStore::start(folder.path().string(),
+                                                     {.case_hash = input.hash});
+  study::StudyModels models(input, store, {});
+  const study::DeadlineMonitor unlimited(silent_monitor(), 0.0);
+  models.freeze();
+  models.working().study.constraints[0].lower = 1000.0;
+  models.stage()->conduct();
+  ASSERT_FALSE(all_kept(models.stage()->outcome().constraints));
+
+  int rounds = 0;
+  ASSERT_TRUE(study::judge_answer(models, unlimited, [&] {
+    ++rounds;
+    models.working().study.constraints[0].lower = kLeast;
+  }));
+  EXPECT_GE(rounds, 1);
+  const study::StudyOutcome& found = models.stage()->outcome();
+  EXPECT_EQ(found.status, study::RunStatus::Converged) << found.message;
+  EXPECT_NEAR(models.answer().responses[1], kLeast, 0.02);
+  study::RunResult result;
+  models.add_to(result);
+  std::vector<std::string> others;
+  bool own = false;
+  for (const store::Refreeze& model : result.refrozen) {
+    const bool of_answer = model.reason == "the answer on a mesh of its own";
+    if (own && !of_answer) {
+      others.push_back(model.reason);
+    }
+    own = own || of_answer;
+  }
+  EXPECT_FALSE(others.empty());
+}
+
+}  // namespace
+}  // namespace meniscus::own_mesh_test
