@@ -123,6 +123,14 @@ FilmReport figures_of(const energy::FilmEnergy& energy,
   return report;
 }
 
+VectorX pressures_of(const FilmReport& report) {
+  VectorX pressure(std::ssize(report.bodies));
+  for (Eigen::Index b = 0; b < pressure.size(); ++b) {
+    pressure[b] = report.bodies[static_cast<std::size_t>(b)].pressure;
+  }
+  return pressure;
+}
+
 void set_verdict(const energy::FilmEnergy& energy,
                  const films::FilmComplex& complex, const VerdictInput& input,
                  FilmState& state) {
@@ -242,12 +250,9 @@ FilmState settle_past_saddles(const energy::FilmEnergy& energy,
   if (!is_saddle(saddle)) {
     return saddle;
   }
-  VectorX pressure(energy.functionals());
-  for (int b = 0; b < energy.functionals(); ++b) {
-    pressure[b] = saddle.report.bodies[b].pressure;
-  }
-  const VectorX mode =
-      lowest_mode_of(energy, targets, saddle.points, pressure).mode;
+  const VectorX mode = lowest_mode_of(energy, targets, saddle.points,
+                                      pressures_of(saddle.report))
+                           .mode;
   const Points directions = energy.space().directions(saddle.points);
   const double edge = energy.mean_edge(saddle.points);
   for (const double off : kOffSaddle) {

@@ -54,6 +54,9 @@ FilmReport figures_of(const energy::FilmEnergy& energy,
                       const films::FilmTargets& targets, const Points& points,
                       const VectorX& pressure);
 
+/// One per functional.
+VectorX pressures_of(const FilmReport& report);
+
 struct VerdictInput {
   std::string reason;  // why no equilibrium was reached; empty: it was
   Vec3 mode_position = Vec3::Zero();  // where the lowest mode is largest

@@ -104,11 +104,7 @@ FilmState settle_with_contacts(films::FilmComplex& complex, double usual_neck,
     if (!has_contacts(complex) || round == kContactRounds) {
       return state;
     }
-    VectorX pressure(energy.functionals());
-    for (int b = 0; b < energy.functionals(); ++b) {
-      pressure[b] = state.report.bodies[b].pressure;
-    }
-    if (update_contacts(complex, energy, pressure) == 0) {
+    if (update_contacts(complex, energy, pressures_of(state.report)) == 0) {
       return state;
     }
   }
@@ -210,11 +206,8 @@ FilmState settle_finer(Chain& chain, films::FilmComplex& complex,
                        .volume_tolerance = options.settle.volume_tolerance,
                        .reduction = last ? 0.0 : kLooseReduction,
                        .monitor = options.settle.monitor};
-  VectorX pressure(energy.functionals());
-  for (int b = 0; b < energy.functionals(); ++b) {
-    pressure[b] = state.report.bodies[b].pressure;
-  }
-  const NestedResult found = newton.run(complex.mesh.points, pressure, nested);
+  const NestedResult found =
+      newton.run(complex.mesh.points, pressures_of(state.report), nested);
   steps += found.iterations;
   if (!found.converged) {
     return settle_directly();

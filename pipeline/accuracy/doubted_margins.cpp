@@ -89,9 +89,13 @@ double raised_bound(const HeldMargin& margin, double lower) {
              : kMostRaise * held;
 }
 
+bool is_near_bound(double margin, double lower) {
+  return margin < kNear * lower;
+}
+
 double foreseen_bound(const HeldMargin& margin, double lower) {
   const double wanted =
-      margin.value < kNear * lower ? wanted_bound(margin) : lower;
+      is_near_bound(margin.value, lower) ? wanted_bound(margin) : lower;
   return std::isfinite(wanted) ? std::clamp(wanted, lower, kMostRaise * lower)
                                : lower;
 }

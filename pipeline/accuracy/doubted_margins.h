@@ -37,6 +37,9 @@ std::vector<HeldMargin> doubted_margins(const case_data::Case& input,
 /// Why it is doubted, as the end of a sentence.
 std::string doubt_text(const HeldMargin& margin);
 
+/// A search that goes on from there may end on that bound.
+bool is_near_bound(double margin, double lower);
+
 /// What its bound is raised to, from `lower` > 0, for the search to go on with:
 /// where the margin less its error keeps the case's bound (margin_to_hold())
 /// and a little above, by half at most; by half where the film may not be there

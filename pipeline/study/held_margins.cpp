@@ -19,6 +19,15 @@ bool holds_margins(const case_data::Case& working) {
                      });
 }
 
+bool nears_margins(const case_data::Case& working, const VectorX& responses) {
+  const auto& constraints = working.study.constraints;
+  return std::any_of(
+      constraints.begin(), constraints.end(), [&](const auto& entry) {
+        return accuracy::holds_margin(working, entry) &&
+               accuracy::is_near_bound(responses[entry.response], entry.lower);
+      });
+}
+
 std::vector<RaisedMargin> raise_margins(const case_data::Case& input,
                                         const VectorX& responses,
                                         const VectorX& errors, Raise raise,

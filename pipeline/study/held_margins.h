@@ -15,6 +15,10 @@ namespace meniscus::study {
 /// The study seeks a least figure and holds a margin above zero.
 bool holds_margins(const case_data::Case& working);
 
+/// A search that goes on from a design with these responses may end on the
+/// bound of one.
+bool nears_margins(const case_data::Case& working, const VectorX& responses);
+
 /// In the warning of a margin whose bound was raised.
 inline constexpr const char* kHeldAbove = ", above its bound";
 

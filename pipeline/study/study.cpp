@@ -97,9 +97,7 @@ class StudyRun {
   bool study_in_time();
   void keep_best_in_time();
   void conduct_study();
-  VectorX best_responses() {
-    return store_.find(stage().model_name(), stage().outcome().best)->responses;
-  }
+  VectorX best_responses() const { return models_.answer().responses; }
   std::optional<accuracy::FinerFilm> finer_film();
   std::optional<VectorX> errors_of_margins(bool proven);
   bool may_raise_margins();
@@ -252,7 +250,8 @@ bool StudyRun::raise_doubted_margins(bool proven) {
 /// Before a search goes on from an answer's own mesh: else it would end on the
 /// margin's bound, and another had to follow.
 void StudyRun::foresee_margins() {
-  if (may_raise_margins()) {
+  if (may_raise_margins() &&
+      nears_margins(models_.working(), best_responses())) {
     if (const std::optional<VectorX> errors = errors_of_margins(true)) {
       raise_margins_by(*errors, Raise::Foreseen);
     }
