@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include <fmt/format.h>
 
@@ -105,22 +106,56 @@ double size_of(double derivative, double value, double range) {
 // tolerance, those of the smallest steps first. Truncation and kinks of the
 // function fade with the step; rounding grows, and shows as disagreement. Where
 // no two agree so well, those that differ least.
-void choose_step(double value, double range,
-                 const GradientCheckOptions& options, GradientCheckRow& row) {
-  constexpr double kWellWithin = 0.1;
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t k = row.differences.size() - 1; k-- > 0;) {
-    const double fine = row.differences[k + 1];
-    const double gap = std::abs(row.differences[k] - fine);
-    if (gap < least) {  // false for NaN
-      least = gap;
-      row.difference = fine;
-      row.step = options.steps[k + 1] * range;
+class Plateau {
+ public:
+  // `fine` and `coarse`: the differences of a step and of the next larger one.
+  // They agree well when they are `close`.
+  void compare(double fine, double coarse, double fine_step, double close) {
+    const double gap = std::abs(coarse - fine);
+    if (!reached_ && gap < least_) {  // false for NaN
+      least_ = gap;
+      difference_ = fine;
+      step_ = fine_step;
     }
-    if (gap <= kWellWithin * options.tolerance * size_of(fine, value, range)) {
-      return;
-    }
+    reached_ = reached_ || gap <= close;
   }
+
+  bool reached() const { return reached_; }
+  double difference() const { return difference_; }
+  double step() const { return step_; }
+
+ private:
+  double least_ = std::numeric_limits<double>::infinity();
+  double difference_ = kNaN;
+  double step_ = 0.0;
+  bool reached_ = false;
+};
+
+// One for each value, by variable j. Steps grow until all are reached.
+std::vector<Plateau> find_plateaus(Sweep& sweep, std::size_t j, double range,
+                                   const GradientCheckOptions& options) {
+  constexpr double kWellWithin = 0.1;
+  const VectorX& centre = sweep.centre();
+  std::vector<Plateau> plateaus(static_cast<std::size_t>(centre.size()));
+  const auto difference = [&](std::size_t step) {
+    return sweep.difference(static_cast<Eigen::Index>(j),
+                            options.steps[step] * range);
+  };
+  std::size_t k = options.steps.size() - 1;
+  VectorX fine = difference(k);
+  while (k > 0 && !std::all_of(plateaus.begin(), plateaus.end(),
+                               std::mem_fn(&Plateau::reached))) {
+    const VectorX coarse = difference(k - 1);
+    for (std::size_t i = 0; i < plateaus.size(); ++i) {
+      const auto line = static_cast<Eigen::Index>(i);
+      plateaus[i].compare(fine[line], coarse[line], options.steps[k] * range,
+                          kWellWithin * options.tolerance *
+                              size_of(fine[line], centre[line], range));
+    }
+    fine = coarse;
+    --k;
+  }
+  return plateaus;
 }
 
 void set_error(double value, double range, double tolerance,
@@ -178,23 +213,18 @@ GradientCheckReport check_gradient(const std::vector<Variable>& variables,
   for (std::size_t j = 0; j < variables.size(); ++j) {
     const auto column = static_cast<Eigen::Index>(j);
     const double range = variables[j].upper - variables[j].lower;
-    // Second-order differences over several steps: truncation falls with h^2,
-    // rounding grows with 1 / h.
-    std::vector<VectorX> sweep_values;
-    for (const double h : options.steps) {
-      sweep_values.push_back(sweep.difference(column, h * range));
-    }
+    // Second-order differences: truncation falls with h^2, rounding grows with
+    // 1 / h; compared at the plateau between the two.
+    const std::vector<Plateau> plateaus =
+        find_plateaus(sweep, j, range, options);
     for (std::size_t i = 0; i < responses.size(); ++i) {
       const auto line = static_cast<Eigen::Index>(i);
       GradientCheckRow& row = report.rows[i * variables.size() + j];
       row.response = responses[i];
       row.variable = variables[j].name;
       row.given = given(line, column);
-      for (const VectorX& values : sweep_values) {
-        row.differences.push_back(values[line]);
-      }
-      // Compared at the plateau between truncation and rounding.
-      choose_step(sweep.centre()[line], range, options, row);
+      row.difference = plateaus[i].difference();
+      row.step = plateaus[i].step();
       set_error(sweep.centre()[line], range, options.tolerance, row);
     }
   }

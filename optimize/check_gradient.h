@@ -1,6 +1,6 @@
 /// Compares given derivatives with central differences over a sweep of steps:
 /// large steps err by truncation, small ones by rounding, and a right gradient
-/// agrees in between.
+/// agrees in between. Larger steps are tried where smaller ones disagree.
 #pragma once
 
 #include <limits>
@@ -12,7 +12,8 @@
 namespace meniscus::optimize {
 
 struct GradientCheckOptions {
-  /// Steps of the sweep x (upper - lower), from large to small; at least two.
+  /// Steps of the sweep x (upper - lower), from large to small; at least two,
+  /// the smallest of which are evaluated first.
   std::vector<double> steps = {1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5};
   /// A derivative a passes when |a - f| <= tolerance max(|a|, |value| / range).
   double tolerance = 1e-5;
@@ -24,11 +25,10 @@ struct GradientCheckRow {
   std::string response;
   std::string variable;
   double given = 0.0;
-  /// By central differences, one per step; NaN where a neighbour failed.
-  std::vector<double> differences;
-  /// The one of the smallest step that agrees with its neighbour in the sweep
-  /// well within the tolerance, else the one that agrees best, found without
-  /// looking at `given`; NaN when fewer than two steps could be evaluated.
+  /// By central differences: of the smallest step that agrees with its
+  /// neighbour in the sweep well within the tolerance, else of the one that
+  /// agrees best, found without looking at `given`; NaN when no two
+  /// neighbouring steps could be evaluated.
   double difference = std::numeric_limits<double>::quiet_NaN();
   double step = 0.0;     // of `difference` [the variable's unit]
   double error = 0.0;    // |given - difference|

@@ -34,7 +34,8 @@ TEST(CheckGradient, PassesTheExactOneAlsoAtABound) {
   ASSERT_EQ(report.rows.size(), 4U);
   EXPECT_EQ(report.rows[1].response, "wave");
   EXPECT_EQ(report.rows[1].variable, "b");
-  EXPECT_EQ(report.evaluations, 1 + 2 * 2 * 7);
+  // Two steps of a smooth function agree; no more are tried.
+  EXPECT_EQ(report.evaluations, 1 + 2 * 2 * 2);
   // Rounding of a second difference at the best step, with a wide margin.
   EXPECT_LT(report.rows[1].error, 1e-8);
 }
@@ -72,6 +73,21 @@ TEST(CheckGradient, AKinkNearbyDoesNotCondemnTheRightOne) {
   EXPECT_TRUE(check(1.0));
   EXPECT_FALSE(check(1.0 + 0.5 * kJump));
   EXPECT_FALSE(check(1.0 + kJump));
+}
+
+/// Values of nine decimals: the smallest steps see slopes 1e-5 off.
+TEST(CheckGradient, LargerStepsAreTriedWhereSmallOnesSeeRounding) {
+  const auto rounded = [](const VectorX& x) {
+    optimize::VectorAnswer answer = evaluate(x);
+    answer.values = (1e9 * answer.values).array().round() / 1e9;
+    return answer;
+  };
+  const optimize::GradientCheckReport report =
+      optimize::check_gradient(kVariables, kResponses, rounded, exact());
+  EXPECT_TRUE(report.passed) << report.message;
+  EXPECT_GT(report.rows[0].step, 5e-5);  // of 2e-5 at least
+  EXPECT_GT(report.evaluations, 1 + 2 * 2 * 2);
+  EXPECT_LT(report.evaluations, 1 + 2 * 2 * 7);
 }
 
 TEST(CheckGradient, NeighboursThatFailDoNotPass) {
