@@ -19,6 +19,7 @@
 #include "io/vtk_files.h"
 #include "pipeline/case_data/film_advice.h"
 #include "pipeline/case_data/film_start.h"
+#include "pipeline/forward/part_warnings.h"
 #include "pipeline/forward/walls.h"
 #include "pipeline/frames/film_frames.h"
 #include "pipeline/results/datafile.h"
@@ -61,13 +62,16 @@ int check_command(const std::string& case_path, const CommonArguments& common) {
   for (const std::string& remark : input.remarks) {
     std::printf("%s\n", remark.c_str());
   }
-  std::string text =
-      fmt::format("{}: nothing wrong found: {}, {}, {}, {}, {}", case_path,
-                  count_text(input.curves.size(), "curve"),
-                  count_text(input.films.size(), "film"),
-                  count_text(input.bodies.size(), "body", "bodies"),
-                  count_text(input.design.size(), "design variable"),
-                  count_text(input.responses.size(), "response"));
+  std::string text = fmt::format(
+      "{}: {}: {}, {}, {}, {}, {}", case_path,
+      reading.warnings.empty()
+          ? "nothing wrong found"
+          : "no errors, " + count_text(reading.warnings.size(), "warning"),
+      count_text(input.curves.size(), "curve"),
+      count_text(input.films.size(), "film"),
+      count_text(input.bodies.size(), "body", "bodies"),
+      count_text(input.design.size(), "design variable"),
+      count_text(input.responses.size(), "response"));
   if (!input.study.members.empty()) {
     text += ", " + count_text(input.study.members.size(), "member");
   }
@@ -341,6 +345,10 @@ int evolve_command(const EvolveArguments& arguments) {
         !text.empty()) {
       std::printf("  films %s\n", text.c_str());
     }
+  }
+  for (const std::string& warning :
+       forward::film_warnings(input, film.report)) {
+    std::fprintf(stderr, "warning: %s\n", warning.c_str());
   }
   if (failure) {
     const std::string advice =

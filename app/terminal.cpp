@@ -43,7 +43,9 @@ std::string truncate_to(const std::string& text, int columns) {
 
 void warn(const std::vector<std::string>& warnings) {
   for (const std::string& warning : warnings) {
-    std::fprintf(stderr, "warning: %s\n", warning.c_str());
+    // Those of the case file's reader name file and line before the word.
+    const bool placed = warning.find(": warning: ") != std::string::npos;
+    std::fprintf(stderr, "%s%s\n", placed ? "" : "warning: ", warning.c_str());
   }
 }
 

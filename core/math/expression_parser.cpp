@@ -57,7 +57,9 @@ class ExpressionParser {
     if (at_ < text_.size()) {
       fail(text_[at_] == ')'
                ? "')' without its '('"
-               : fmt::format("unexpected '{}'{}", here(), unit_advice()));
+               : fmt::format("unexpected '{}'{}", here(),
+                             text_[at_] == ',' ? " (decimals follow a point)"
+                                               : unit_advice()));
     }
     Expression result;
     result.text_ = text_;

@@ -1,6 +1,7 @@
 /// The numbers of a film that change with the design.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "evolve/films/film_complex.h"
@@ -13,5 +14,12 @@ struct FilmTargets {
   std::vector<ComplexBody> bodies;  // volume or pressure asked; after them one
                                     // per held quantity, its target as volume
 };
+
+/// Forces of a film are measured by it [force/length]; 0 without surfaces.
+inline double largest_tension(const FilmTargets& targets) {
+  return targets.tension.empty() ? 0.0
+                                 : *std::max_element(targets.tension.begin(),
+                                                     targets.tension.end());
+}
 
 }  // namespace meniscus::films

@@ -53,8 +53,7 @@ FilmState settle(const energy::FilmEnergy& energy,
                  double usual_neck, const SettleOptions& options,
                  DirectionRule rule) {
   const Timer timer;
-  const double tension =
-      *std::max_element(targets.tension.begin(), targets.tension.end());
+  const double tension = films::largest_tension(targets);
   // The bound on the residual is a share of tension x edge, the natural force
   // on a vertex.
   NewtonOptions newton{.rule = rule,
@@ -114,6 +113,7 @@ FilmReport figures_of(const energy::FilmEnergy& energy,
   report.facets = static_cast<int>(energy.facets().size());
   report.energy = energy.value(points, targets);
   report.area = energy.area(points);
+  report.tension = films::largest_tension(targets);
   const VectorX volumes = energy.volumes(points);
   for (int b = 0; b < energy.functionals(); ++b) {
     const films::ComplexBody& body = targets.bodies[b];

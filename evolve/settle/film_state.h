@@ -31,6 +31,7 @@ struct FilmReport {
   int facets = 0;
   double energy = 0.0;    // tension x area, and fields [force length]
   double area = 0.0;      // of films, caps not counted [length^2]
+  double tension = 0.0;   // the largest of a film [force/length]
   double residual = 0.0;  // max |dE/dh_i - sum p dV/dh_i| over free vertices
   double residual_bound = 0.0;  // 1e-9 x tension x mean edge [force]
   double min_eigenvalue = 0.0;  // of the constrained Hessian in the metric of

@@ -197,8 +197,7 @@ FilmState settle_finer(Chain& chain, films::FilmComplex& complex,
   if (direct || has_contacts(complex)) {
     return settle_directly();
   }
-  const double tension =
-      *std::max_element(targets.tension.begin(), targets.tension.end());
+  const double tension = films::largest_tension(targets);
   NestedNewton newton(chain.levels, targets);
   NestedOptions nested{.residual_bound = options.settle.residual_factor *
                                          tension *

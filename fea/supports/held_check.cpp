@@ -54,13 +54,15 @@ struct RigidFrame {
 };
 
 std::string direction_name(const Vec3& d) {
-  constexpr double kAligned = 1.0 - 1e-9;
+  constexpr double kAligned = 1.0 - 1e-7;  // components of others below kNone
   for (int k = 0; k < 3; ++k) {
     if (std::abs(d[k]) > kAligned) {
       return std::string(1, static_cast<char>('x' + k));
     }
   }
-  return fmt::format("({:.3g}, {:.3g}, {:.3g})", d.x(), d.y(), d.z());
+  constexpr double kNone = 5e-4;  // below the digits shown
+  const auto shown = [&](int k) { return std::abs(d[k]) < kNone ? 0.0 : d[k]; };
+  return fmt::format("({:.3g}, {:.3g}, {:.3g})", shown(0), shown(1), shown(2));
 }
 
 /// Describes the rigid motions that span the columns of `free`.

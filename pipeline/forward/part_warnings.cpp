@@ -18,6 +18,10 @@ namespace {
 constexpr double kLargeDisplacement = 0.05;
 // Flat facets of a curved wall lie closer than it is thick.
 constexpr double kFlatFacets = 0.02;
+// An eigenvalue x area / tension below it is a free mode that the facets hold:
+// 9 and more of drops that stand upright between two circles, 0.01 to 0.03 of
+// those that hang to a side.
+constexpr double kFreeMode = 0.1;
 
 double largest_displacement(const VectorX& u) {
   double largest = 0.0;
@@ -98,6 +102,22 @@ std::vector<std::string> part_warnings(
     warnings.push_back(std::move(thin));
   }
   return warnings;
+}
+
+std::vector<std::string> film_warnings(const case_data::Case& input,
+                                       const settle::FilmReport& film) {
+  const double held = film.min_eigenvalue * film.area;
+  if (film.index > 0 || !(held < kFreeMode * film.tension)) {
+    return {};
+  }
+  return {fmt::format(
+      "the film can move almost freely (smallest eigenvalue {:.2g} {}/{}3, "
+      "{:.2g} of tension / area): along that mode the mesh chooses its shape, "
+      "not the liquid, so that another mesh gives another part; as a drop with "
+      "more liquid than its curves hold upright, which hangs to one side. Look "
+      "at film.png, and check the volumes",
+      film.min_eigenvalue, input.units.force, input.units.length,
+      held / film.tension)};
 }
 
 std::vector<std::string> wall_warnings(const ForwardModel& model) {

@@ -52,9 +52,14 @@ void read_content(const std::string& text, case_data::CaseProblems& problems,
     result.answer_hash =
         case_data::content_hash(canonical_answer_text(root) + files);
   } catch (const toml::parse_error& error) {
+    const std::string_view reason = error.description();
+    // What it says of a line's end within a string.
+    const bool unclosed = reason.find("parsing string") != reason.npos &&
+                          reason.find("control char") != reason.npos;
     problems.add(static_cast<int>(error.source().begin.line),
-                 fmt::format("this is not TOML: {} (column {})",
-                             error.description(), error.source().begin.column));
+                 fmt::format("this is not TOML: {} (column {}){}", reason,
+                             error.source().begin.column,
+                             unclosed ? "; is a closing quote missing?" : ""));
   }
 }
 

@@ -73,7 +73,8 @@ std::string bounds_text(const case_data::Case& input,
   return bounds;
 }
 
-/// "  sway   0.09 mm, at most 0.1 mm: kept".
+/// "  sway   0.09 mm, at most 0.1 mm: kept"; a margin that the search held
+/// higher says at what.
 std::string constraint_text(const case_data::Case& input,
                             const case_data::ConstraintEntry& entry,
                             const study::Constraint& constraint) {
@@ -85,11 +86,20 @@ std::string constraint_text(const case_data::Case& input,
   };
   const bool active =
       entry.lower != entry.upper && (is_at(entry.lower) || is_at(entry.upper));
-  return fmt::format("  {:<20} {}, {}: {}\n", constraint.name,
+  const std::string held =
+      !constraint.held
+          ? ""
+          : fmt::format(
+                "{}the search held it at {} or more for the mesh's "
+                "error of it",
+                is_at(*constraint.held) ? ", where it stands: " : "; ",
+                unit.text(*constraint.held));
+  return fmt::format("  {:<20} {}, {}: {}{}\n", constraint.name,
                      unit.text(constraint.value), bounds_text(input, entry),
                      !constraint.satisfied ? "VIOLATED"
                      : active              ? "kept, at its bound"
-                                           : "kept");
+                                           : "kept",
+                     held);
 }
 
 /// "  sigma   a mean over the volume; the nodal peak of 'lift' is 308 MPa ...".

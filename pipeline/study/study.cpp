@@ -138,7 +138,11 @@ class StudyRun {
   std::vector<std::string> left_out_;
   Timer timer_;
   // Warnings of the bounds of margins that were raised, by constraint.
-  std::map<std::size_t, std::string> held_above_;
+  struct HeldAbove {
+    double lower = 0.0;
+    std::string warning;
+  };
+  std::map<std::size_t, HeldAbove> held_above_;
   // The last best design whose film was put on finer facets, of that model.
   struct OnFinerFacets {
     std::string model;
@@ -227,10 +231,10 @@ bool StudyRun::raise_margins_by(const VectorX& errors, Raise raise) {
     models_.log(
         fmt::format("'{}' is {}, and {}: the study goes on and holds it at {}",
                     margin.name, value, doubt, held));
-    held_above_[margin.constraint] = fmt::format(
-        "'{}' was {} at an earlier design, and {}: the search held it at {} or "
-        "more{}",
-        margin.name, value, doubt, held, kHeldAbove);
+    held_above_[margin.constraint] = {
+        lower, fmt::format("'{}' was {} at an earlier design, and {}: the "
+                           "search held it at {} or more{}",
+                           margin.name, value, doubt, held, kHeldAbove)};
   }
   return !raised.empty();
 }
@@ -335,6 +339,10 @@ bool StudyRun::finish_best() {
   for (std::string& warning : forward::norm_warnings(
            input_, forward::norm_peaks(input_, result_.best->responses,
                                        result_.stress))) {
+    result_.warnings.push_back(std::move(warning));
+  }
+  for (std::string& warning :
+       forward::film_warnings(input_, result_.best->film)) {
     result_.warnings.push_back(std::move(warning));
   }
   for (std::string& warning :
@@ -540,8 +548,9 @@ void StudyRun::combine_errors(const accuracy::MeshSequence& meshes) {
 }
 
 void StudyRun::warn() {
-  for (const auto& [constraint, warning] : held_above_) {
-    result_.warnings.push_back(warning);
+  for (const auto& [constraint, held] : held_above_) {
+    result_.warnings.push_back(held.warning);
+    result_.constraints[constraint].held = held.lower;
   }
   if (!left_out_.empty()) {
     result_.warnings.push_back(

@@ -42,6 +42,9 @@ struct Constraint {
   double value = 0.0;
   double bound = 0.0;
   bool satisfied = false;
+  // A margin's lower bound in the search, where higher than the case's, for the
+  // mesh's error of it.
+  std::optional<double> held;
 };
 
 /// What a first stage on a coarser model came to.

@@ -300,7 +300,28 @@ targets = { sway = 0.007 }
                 ("loads = [{", "loads = [{ gravity = [0, 0, -9.81] }, {",
                  "gravity of load case 'service' is 9.81 mm/s2")):
             done = self.call("check", self.case(SIZED_STRUT.replace(was, now)))
-            self.expect(done, 0, told)
+            self.expect(done, 0, told, "no errors, 1 warning:")
+            self.assertNotIn("nothing wrong", done.stdout)
+
+    def test_a_drop_that_hangs_to_a_side_is_told(self):
+        """Between equal circles: with little liquid it stands upright, with
+        much of it to which side is the mesh's, and figures are of that."""
+        for volumes, hangs in ((1.5, False), (12.0, True)):
+            text = SIZED_STRUT.replace("initial = 25.0", "initial = 20.0")
+            text = text.replace("initial = 9e4",
+                                f"initial = {volumes * math.pi * 20**2 * 60!r}")
+            text = text.replace("[7e4, 1.2e5]", "[7e4, 2e6]")
+            case = self.case(text)
+            out = self.folder / f"drop_{hangs}"
+            done = self.expect(self.call(
+                "run", case, "--set", "study.kind=analyse", "--no-pictures",
+                "--no-report", "--out", out), 0)
+            film = self.expect(self.call("evolve", case, "--no-pictures",
+                                         "--out", out / "film"), 0)
+            told = "the film can move almost freely"
+            for said in (done.stderr, film.stderr,
+                         " ".join(self.result(out)["warnings"])):
+                (self.assertIn if hangs else self.assertNotIn)(told, said)
 
     def test_a_body_without_liquid_is_told(self):
         done = self.call("check", self.case(SIZED_STRUT.replace(

@@ -69,6 +69,30 @@ TEST(PartWarnings, HoldEachBodyAgainstItsOwnYieldStrength) {
                         HasSubstr("safety factor 0.8"))));
 }
 
+/// A drop between two circles of radius 10 at a distance of 40: with three
+/// cylinders of liquid it stands upright, with eight it hangs to a side that
+/// edges of 4, 4.5 and 5 choose differently.
+TEST(FilmWarnings, TellOfDropsThatHangToASide) {
+  settle::FilmReport film;
+  film.tension = 1.0;
+  film.area = 6.9e3;
+  film.min_eigenvalue = 2.17e-3;
+  EXPECT_THAT(forward::film_warnings(in_newtons(), film), IsEmpty());
+  film.area = 1.0e4;
+  film.min_eigenvalue = 2.58e-6;
+  EXPECT_THAT(forward::film_warnings(in_newtons(), film),
+              ElementsAre(AllOf(HasSubstr("can move almost freely"),
+                                HasSubstr("2.6e-06"), HasSubstr("0.026 of"))));
+  // Forces, and with them eigenvalues, are by the tension.
+  film.tension = 1e-3;
+  EXPECT_THAT(forward::film_warnings(in_newtons(), film), IsEmpty());
+  // An unstable one fails; a part without films has no modes.
+  film.index = 1;
+  film.tension = 1.0;
+  EXPECT_THAT(forward::film_warnings(in_newtons(), film), IsEmpty());
+  EXPECT_THAT(forward::film_warnings(in_newtons(), {}), IsEmpty());
+}
+
 TEST(PartWarnings, TellOfDeflectionsThatAreNotSmall) {
   EXPECT_THAT(warnings_of(pulled_bar(200.0, 200.0, 1e3)),
               ElementsAre(HasSubstr("deflection not small")));

@@ -318,6 +318,14 @@ const Trouble kMistakes[] = {
      "23: this is not TOML"},
     {"Unquoted", "radius = \"foot\"", "radius = 2 * foot",
      "16: this is not TOML"},
+    {"Unclosed", "radius = \"foot\"", "radius = \"foot",
+     "16: this is not TOML: Error while parsing string: unescaped control "
+     "characters other than TAB (U+0009) are explicitly prohibited (column "
+     "15); "
+     "is a closing quote missing?"},
+    {"DecimalComma", "radius = \"foot\"", "radius = \"70,5 mm\"",
+     "16: curves.base.radius: unexpected ',' (decimals follow a point) in "
+     "'70,5 mm'"},
 };
 
 INSTANTIATE_TEST_SUITE_P(CaseReader, MistakeTest, testing::ValuesIn(kMistakes),
