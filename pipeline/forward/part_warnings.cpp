@@ -19,7 +19,7 @@ constexpr double kLargeDisplacement = 0.05;
 // Flat facets of a curved wall lie closer than it is thick.
 constexpr double kFlatFacets = 0.02;
 // An eigenvalue x area / tension below it is a free mode that the facets hold:
-// 9 and more of drops that stand upright between two circles, 0.01 to 0.03 of
+// 3 and more of drops that stand upright between two circles, 0.003 to 0.05 of
 // those that hang to a side.
 constexpr double kFreeMode = 0.1;
 
