@@ -346,10 +346,6 @@ int evolve_command(const EvolveArguments& arguments) {
       std::printf("  films %s\n", text.c_str());
     }
   }
-  for (const std::string& warning :
-       forward::film_warnings(input, film.report)) {
-    std::fprintf(stderr, "warning: %s\n", warning.c_str());
-  }
   if (failure) {
     const std::string advice =
         case_data::tried_advice(input, inputs, *failure,
@@ -365,6 +361,7 @@ int evolve_command(const EvolveArguments& arguments) {
     std::fprintf(stderr, "failed: %s\n", message.c_str());
     return kExitNoSolution;
   }
+  warn(forward::film_warnings(input, film.report));
   return write_walls(input, forward::make_walls(inputs, model, film.points),
                      folder, common);
 }

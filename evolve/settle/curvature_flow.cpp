@@ -54,8 +54,7 @@ class Flow {
         movers_.push_back(v);
       }
     }
-    const double most =
-        *std::max_element(targets_.tension.begin(), targets_.tension.end());
+    const double most = films::largest_tension(targets_);
     for (const int label : complex.mesh.facet_label) {
       // A film whose tension is a function or 0 still keeps its facets apart.
       const bool film = complex.surfaces[label].liquid;

@@ -116,8 +116,7 @@ bool NestedNewton::refresh() {
   energy_.elements(points_, directions_, targets_, pressure_, slope, elements);
   // Held volumes and rigid motions leave modes that only the constraints
   // hold; the preconditioner gets them from the shift.
-  const double tension =
-      *std::max_element(targets_.tension.begin(), targets_.tension.end());
+  const double tension = films::largest_tension(targets_);
   const double shift =
       constraints_.cols() > 0 ? tension / bounding_diagonal2(points_) : 0.0;
   if (!multigrid_.refresh(directions_, elements, metric_, shift)) {

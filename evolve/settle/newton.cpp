@@ -277,8 +277,7 @@ NewtonResult FilmNewton::run(const Points& base, const Points& directions,
   // The first shift is tension / size^2, the scale of the Hessian's eigenvalues
   // in the metric of lumped area.
   const double diagonal = std::max(1e-300, bounding_diagonal(base));
-  const double most_tension =
-      *std::max_element(targets_.tension.begin(), targets_.tension.end());
+  const double most_tension = films::largest_tension(targets_);
   base_shift_ = most_tension / (diagonal * diagonal);
   shift_ = 0.0;
   // Start heights, and pressures that fit the slopes best in the metric.

@@ -1,6 +1,5 @@
 #include "pipeline/results/datafile.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -57,11 +56,8 @@ int refinements_of(const films::FilmComplex& complex,
 
 double residual_bound_of(const energy::FilmEnergy& energy, const Points& points,
                          const films::FilmTargets& targets) {
-  const double tension =
-      targets.tension.empty()
-          ? 0.0
-          : *std::max_element(targets.tension.begin(), targets.tension.end());
-  return kDescentResidual * tension * energy.mean_edge(points);
+  return kDescentResidual * films::largest_tension(targets) *
+         energy.mean_edge(points);
 }
 
 /// Throws InvalidInput where so many refinements make more facets than the

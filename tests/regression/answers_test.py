@@ -322,6 +322,12 @@ targets = { sway = 0.007 }
             for said in (done.stderr, film.stderr,
                          " ".join(self.result(out)["warnings"])):
                 (self.assertIn if hangs else self.assertNotIn)(told, said)
+        # One that fails to settle has other troubles.
+        thin = self.case(SIZED_STRUT.replace("initial = 9e4", "initial = 7e3")
+                         .replace("[7e4, 1.2e5]", "[6e3, 1e4]"))
+        done = self.expect(self.call("evolve", thin, "--no-pictures", "--out",
+                                     self.folder / "thin"), 3, "failed: ")
+        self.assertNotIn("freely", done.stderr)
 
     def test_a_body_without_liquid_is_told(self):
         done = self.call("check", self.case(SIZED_STRUT.replace(
