@@ -18,9 +18,9 @@ std::vector<std::string> part_warnings(
     const case_data::Case& input, const EvaluationFields& fields,
     const std::vector<StressFigures>& stress);
 
-/// A sentence where the mesh chooses a settled film's shape: its lowest mode is next to
-/// free, as that of a drop which has more liquid than its curves hold upright
-/// and hangs to any side.
+/// A sentence where the mesh chooses a settled film's shape: its lowest mode is
+/// next to free, as that of a drop which has more liquid than its curves hold
+/// upright and hangs to any side.
 std::vector<std::string> film_warnings(const case_data::Case& input,
                                        const settle::FilmReport& film);
 
