@@ -60,6 +60,17 @@ struct CylinderSurface {
   bool inward = false;  // the solid is outside of it: a bore
 };
 
+/// The same, b along its lines: of radius + b sin(angle), b cos(angle) along
+/// the axis.
+struct ConeSurface {
+  Vec3 center = Vec3::Zero();
+  Vec3 axis = Vec3::UnitZ();
+  Vec3 zero = Vec3::UnitX();
+  double radius = 1.0;
+  double angle = 0.0;  // between lines and axis, not 0 [radian]
+  bool inward = false;
+};
+
 /// By longitude a from `zero` around `axis`, and latitude b towards it.
 struct SphereSurface {
   Vec3 center = Vec3::Zero();
@@ -92,7 +103,8 @@ constexpr int kPole = -1;
 
 struct BrepFace {
   std::string name;
-  std::variant<PlaneSurface, CylinderSurface, SphereSurface, SplineSurface>
+  std::variant<PlaneSurface, CylinderSurface, ConeSurface, SphereSurface,
+               SplineSurface>
       surface;
   // Closed, counter-clockwise seen from outside, the outer one first.
   std::vector<std::vector<BrepUse>> loops;

@@ -134,7 +134,10 @@ bool SolidBuilder::add_simple(const std::string& name,
   if (!shape) {
     return false;
   }
-  report_.simple.push_back({name, name_of(*shape), shape->off});
+  const bool has_radius =
+      std::holds_alternative<CylinderSurface>(shape->surface) ||
+      std::holds_alternative<SphereSurface>(shape->surface);
+  report_.simple.push_back({name, name_of(*shape), has_radius, shape->off});
   if (const auto* plane = std::get_if<PlaneSurface>(&shape->surface)) {
     std::vector<Triangle> corners;
     corners.reserve(facets.size());
@@ -146,7 +149,8 @@ bool SolidBuilder::add_simple(const std::string& name,
         {name, facets, boundary_loops(corners), solid_rims, *plane});
   } else {
     const bool ball = std::holds_alternative<SphereSurface>(shape->surface);
-    (ball ? report_.spheres : report_.cylinders) += 1;
+    const bool cone = std::holds_alternative<ConeSurface>(shape->surface);
+    (ball ? report_.spheres : cone ? report_.cones : report_.cylinders) += 1;
     turned_.push_back({name, *shape, solid_rims, mesh});
   }
   return true;

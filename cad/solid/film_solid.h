@@ -1,5 +1,6 @@
-/// A film mesh as a CAD solid: films become B-spline patches, or the plane, the
-/// cylinder or the sphere that they are; caps planes, rims their exact curves.
+/// A film mesh as a CAD solid: films become B-spline patches, or the plane,
+/// cylinder, cone or sphere that they are; caps planes, rims their exact
+/// curves.
 #pragma once
 
 #include <string>
@@ -27,11 +28,12 @@ struct FilmSolidInput {
                                           // too: several planes
 };
 
-/// A film that is a plane, a cylinder or a sphere (cad/solid/simple_film.h).
+/// A film that is a plane, cylinder, cone or sphere (cad/solid/simple_film.h).
 struct SimpleFace {
   std::string film;
-  std::string shape;  // "cylinder of radius 12"
-  double off = 0.0;   // the farthest film vertex [length]
+  std::string shape;        // "cylinder of radius 12"
+  bool has_radius = false;  // told last, a length
+  double off = 0.0;         // the farthest film vertex [length]
 };
 
 /// What was measured of the solid; lengths in the mesh's unit.
@@ -39,6 +41,7 @@ struct FilmSolidReport {
   int patches = 0;
   int planes = 0;
   int cylinders = 0;
+  int cones = 0;
   int spheres = 0;
   double gap = 0.0;            // between the faces at an edge, the largest
   double film_to_solid = 0.0;  // farthest film vertex from its patch

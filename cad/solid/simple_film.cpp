@@ -140,6 +140,107 @@ std::optional<SimpleFilm> cylinder_of(const FilmMesh& mesh,
   return film;
 }
 
+std::optional<SimpleFilm> cone_of(const FilmMesh& mesh,
+                                  const std::vector<RimCircle>& rims,
+                                  double limit) {
+  if (rims.size() != 2 || !coaxial(rims[0], rims[1], size_of(mesh))) {
+    return {};
+  }
+  const RimCircle& low = rims[0];
+  const Vec3 way = rims[1].center - low.center;
+  const double wider = rims[1].radius - low.radius;
+  ConeSurface surface{low.center, way.normalized(), low.zero, low.radius,
+                      std::atan2(wider, way.norm())};
+  SimpleFilm film;
+  for (const Vec3& p : mesh.points) {
+    const Vec3 d = p - surface.center;
+    const double r = surface.axis.cross(d).norm();
+    const double z = surface.axis.dot(d);
+    film.off =
+        std::max(film.off, std::abs((r - low.radius) * std::cos(surface.angle) -
+                                    z * std::sin(surface.angle)));
+  }
+  if (film.off > limit) {
+    return {};
+  }
+  surface.inward = looks_inward(mesh, surface.center, surface.axis);
+  film.surface = surface;
+  film.high = std::hypot(way.norm(), wider);
+  film.low_rim = 0;
+  film.high_rim = 1;
+  return film;
+}
+
+/// The arcs of a rim of lines and circular arcs; none where it has others.
+std::vector<RimCircle> arcs_of(const RimCurve& rim) {
+  std::vector<RimCircle> arcs;
+  for (int k = 0; k < rim.piece_count(); ++k) {
+    const EdgeCurve& curve = rim.piece(k).curve;
+    if (std::holds_alternative<StraightLine>(curve)) {
+      continue;
+    }
+    const auto* arc = std::get_if<EllipseCurve>(&curve);
+    if (arc == nullptr ||
+        std::abs(arc->u.norm() - arc->v.norm()) > kExact * arc->u.norm()) {
+      return {};
+    }
+    arcs.push_back({arc->center, arc->u.cross(arc->v).normalized(),
+                    arc->u.normalized(), arc->u.norm()});
+  }
+  return arcs;
+}
+
+/// Between two equal arcs on one axis and two lines along it.
+std::optional<SimpleFilm> part_cylinder_of(const FilmMesh& mesh,
+                                           const std::vector<FilmRim>& rims,
+                                           double limit, double edge) {
+  if (rims.size() != 1 || rims[0].curve->piece_count() != 4) {
+    return {};
+  }
+  const RimCurve& rim = *rims[0].curve;
+  std::vector<RimCircle> arcs = arcs_of(rim);
+  if (arcs.size() != 2 ||
+      std::abs(arcs[0].radius - arcs[1].radius) > kExact * arcs[0].radius) {
+    return {};
+  }
+  arcs[1].normal = arcs[1].normal.dot(arcs[0].normal) < 0.0
+                       ? Vec3(-arcs[1].normal)
+                       : arcs[1].normal;
+  if (!coaxial(arcs[0], arcs[1], size_of(mesh))) {
+    return {};
+  }
+  const Vec3 way = arcs[1].center - arcs[0].center;
+  CylinderSurface surface{arcs[0].center, way.normalized(), Vec3::Zero(),
+                          arcs[0].radius};
+  for (int k = 0; k < rim.piece_count(); ++k) {
+    const auto* line = std::get_if<StraightLine>(&rim.piece(k).curve);
+    if (line != nullptr &&
+        line->direction.cross(surface.axis).norm() > kExact) {
+      return {};
+    }
+  }
+  // Away from the part: opposite to the middle of its first arc.
+  const int first =
+      std::holds_alternative<EllipseCurve>(rim.piece(0).curve) ? 0 : 1;
+  const RimPiece& arc = rim.piece(first);
+  surface.zero =
+      (surface.center - point_of(arc.curve, 0.5 * (arc.first + arc.last)))
+          .normalized();
+  SimpleFilm film;
+  for (const Vec3& p : mesh.points) {
+    const double r = surface.axis.cross(p - surface.center).norm();
+    film.off = std::max(film.off, std::abs(r - surface.radius));
+  }
+  if (film.off > std::max(limit, sagitta(edge, surface.radius))) {
+    return {};
+  }
+  surface.inward = looks_inward(mesh, surface.center, surface.axis);
+  film.surface = surface;
+  film.high = way.norm();
+  film.is_part = true;
+  return film;
+}
+
 /// Center and radius by least squares of |p|^2 = 2 c.p + const, which is close
 /// to distances where the points are near a sphere.
 bool fit_ball(const FilmMesh& mesh, Vec3& center, double& radius) {
@@ -284,6 +385,9 @@ std::optional<SimpleFilm> simple_film(const FilmMesh& mesh,
   if (auto plane = plane_of(mesh, rims, limit)) {
     return plane;
   }
+  if (auto part = part_cylinder_of(mesh, rims, limit, edge)) {
+    return part;
+  }
   const auto circles = circles_of(rims);
   if (!circles) {
     return {};
@@ -291,12 +395,20 @@ std::optional<SimpleFilm> simple_film(const FilmMesh& mesh,
   if (auto cylinder = cylinder_of(mesh, *circles, limit, edge)) {
     return cylinder;
   }
-  return sphere_of(mesh, *circles, limit, edge);
+  // Short zones of both look alike: whichever is nearer.
+  const auto cone = cone_of(mesh, *circles, limit);
+  const auto ball = sphere_of(mesh, *circles, limit, edge);
+  return cone && (!ball || cone->off <= ball->off) ? cone : ball;
 }
 
 std::string name_of(const SimpleFilm& film) {
   if (const auto* tube = std::get_if<CylinderSurface>(&film.surface)) {
-    return fmt::format("cylinder of radius {:.6g}", tube->radius);
+    return fmt::format("{}cylinder of radius {:.6g}",
+                       film.is_part ? "part of a " : "", tube->radius);
+  }
+  if (const auto* cone = std::get_if<ConeSurface>(&film.surface)) {
+    return fmt::format("cone of {:.6g} degrees",
+                       std::abs(cone->angle) * 180.0 / std::numbers::pi);
   }
   if (const auto* ball = std::get_if<SphereSurface>(&film.surface)) {
     return fmt::format("sphere of radius {:.6g}", ball->radius);

@@ -1,6 +1,8 @@
 #include "cad/solid/solid_rims.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <variant>
 
 #include <Eigen/Geometry>
@@ -45,8 +47,9 @@ std::vector<SolidRims::Side> SolidRims::sides_of(int rim) const {
   std::vector<Side> sides;
   for (int k = 0; k < curves_[rim].piece_count(); ++k) {
     const RimPiece& piece = curves_[rim].piece(k);
-    if (std::holds_alternative<StraightLine>(piece.curve)) {
-      sides.push_back({point_of(piece.curve, piece.first),
+    const bool whole = curves_[rim].piece_count() == 1;
+    if (!whole && !std::holds_alternative<SplineCurve>(piece.curve)) {
+      sides.push_back({piece, point_of(piece.curve, piece.first),
                        point_of(piece.curve, piece.last), rim, k});
     }
   }
@@ -57,11 +60,29 @@ bool SolidRims::alike(const Side& a, const Side& b) const {
   const auto same = [this](const Vec3& p, const Vec3& q) {
     return (p - q).norm() <= same_;
   };
-  return (same(a.from, b.from) && same(a.to, b.to)) ||
-         (same(a.from, b.to) && same(a.to, b.from));
+  const auto middle = [](const Side& side) {
+    const RimPiece& piece = side.shape;
+    return point_of(piece.curve, 0.5 * (piece.first + piece.last));
+  };
+  return ((same(a.from, b.from) && same(a.to, b.to)) ||
+          (same(a.from, b.to) && same(a.to, b.from))) &&
+         same(middle(a), middle(b));
 }
 
 bool SolidRims::lies_on(const Side& side, const Vec3& p) const {
+  if (const auto* arc = std::get_if<EllipseCurve>(&side.shape.curve)) {
+    const Vec3 d = p - arc->center;
+    const double angle = std::atan2(d.dot(arc->v) / arc->v.squaredNorm(),
+                                    d.dot(arc->u) / arc->u.squaredNorm());
+    // The turn within which the piece begins.
+    const double turn = 2.0 * std::numbers::pi;
+    const double t =
+        angle + turn * std::ceil((side.shape.first - angle) / turn);
+    const bool at_end =
+        (p - side.from).norm() <= same_ || (p - side.to).norm() <= same_;
+    return at_end ||
+           (t <= side.shape.last && (point_of(*arc, t) - p).norm() <= same_);
+  }
   const Vec3 way = side.to - side.from;
   const double share =
       std::clamp(way.dot(p - side.from) / way.squaredNorm(), 0.0, 1.0);
@@ -103,7 +124,7 @@ RimCurve SolidRims::polygon_around(const Points& points) const {
     const Vec3& p = points[i];
     const Vec3& before = points[(i + n - 1) % n];
     const Vec3& after = points[(i + 1) % n];
-    const Side across{before, after};
+    const Side across{{StraightLine{}}, before, after};
     if (!lies_on(across, p) ||
         std::any_of(sides_.begin(), sides_.end(), [&](const Side& side) {
           return (side.from - p).norm() <= same_;

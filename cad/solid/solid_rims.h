@@ -14,7 +14,7 @@ namespace meniscus::solid {
 
 class SolidRims {
  public:
-  /// Two rims share a side where straight pieces of both have the same ends.
+  /// Two rims share a side where lines or circular arcs of both are the same.
   SolidRims(const SurfaceMesh& mesh, const std::vector<NamedRim>& rims);
 
   /// The curve that a loop lies on; a new one where there is none: a polygon
@@ -34,6 +34,7 @@ class SolidRims {
 
  private:
   struct Side {
+    RimPiece shape;
     Vec3 from;
     Vec3 to;
     int rim = 0;

@@ -13,15 +13,26 @@ namespace {
 constexpr double kFullTurn = 2.0 * std::numbers::pi;
 
 Vec3 axis_of(const SimpleFilm& film) {
-  const auto* tube = std::get_if<CylinderSurface>(&film.surface);
-  return tube != nullptr ? tube->axis
-                         : std::get<SphereSurface>(film.surface).axis;
+  return std::visit(
+      [](const auto& surface) -> Vec3 {
+        if constexpr (requires { surface.axis; }) {
+          return surface.axis;
+        } else {
+          return surface.normal;
+        }
+      },
+      film.surface);
 }
 
 /// The point with first parameter 0.
 Vec3 seam_point(const SimpleFilm& film, double b) {
   if (const auto* tube = std::get_if<CylinderSurface>(&film.surface)) {
     return tube->center + tube->radius * tube->zero + b * tube->axis;
+  }
+  if (const auto* cone = std::get_if<ConeSurface>(&film.surface)) {
+    return cone->center +
+           (cone->radius + b * std::sin(cone->angle)) * cone->zero +
+           b * std::cos(cone->angle) * cone->axis;
   }
   const auto& ball = std::get<SphereSurface>(film.surface);
   return ball.center +
@@ -31,6 +42,12 @@ Vec3 seam_point(const SimpleFilm& film, double b) {
 double distance_to_simple(const SimpleFilm& film, const Vec3& p) {
   if (const auto* tube = std::get_if<CylinderSurface>(&film.surface)) {
     return std::abs(tube->axis.cross(p - tube->center).norm() - tube->radius);
+  }
+  if (const auto* cone = std::get_if<ConeSurface>(&film.surface)) {
+    const Vec3 d = p - cone->center;
+    const double r = cone->axis.cross(d).norm() - cone->radius;
+    return std::abs(r * std::cos(cone->angle) -
+                    cone->axis.dot(d) * std::sin(cone->angle));
   }
   const auto& ball = std::get<SphereSurface>(film.surface);
   return std::abs((p - ball.center).norm() - ball.radius);
@@ -43,6 +60,10 @@ class TurnedBuilder {
       : film_(film), shape_(film.shape), rims_(rims), brep_(brep) {}
 
   void build() {
+    if (shape_.is_part) {
+      build_part();
+      return;
+    }
     const int bottom = end_vertex(shape_.low_rim, shape_.low);
     const int top = end_vertex(shape_.high_rim, shape_.high);
     const int seam = static_cast<int>(brep_.edges.size());
@@ -54,14 +75,14 @@ class TurnedBuilder {
     loop_.push_back({seam, false, {0.0, shape_.low}, {0.0, shape_.high}});
     BrepFace face{film_.name, {}, {}};
     bool inward = false;
-    if (const auto* tube = std::get_if<CylinderSurface>(&shape_.surface)) {
-      face.surface = *tube;
-      inward = tube->inward;
-    } else {
-      const auto& ball = std::get<SphereSurface>(shape_.surface);
-      face.surface = ball;
-      inward = ball.inward;
-    }
+    std::visit(
+        [&](const auto& surface) {
+          face.surface = surface;
+          if constexpr (requires { surface.inward; }) {
+            inward = surface.inward;
+          }
+        },
+        shape_.surface);
     if (inward) {
       turn_loop();
     }
@@ -70,6 +91,32 @@ class TurnedBuilder {
   }
 
  private:
+  /// Angle and height of a point of a cylinder.
+  Vec2 place_of(const Vec3& point) const {
+    const auto& tube = std::get<CylinderSurface>(shape_.surface);
+    const Vec3 d = point - tube.center;
+    const double angle =
+        std::atan2(d.dot(tube.axis.cross(tube.zero)), d.dot(tube.zero));
+    return {angle < 0.0 ? angle + kFullTurn : angle, d.dot(tube.axis)};
+  }
+  /// Within its rim, which nowhere crosses angle 0.
+  void build_part() {
+    const RimEdges& rim = rims_[film_.rims[0]];
+    const std::vector<int> loop = boundary_loops(film_.mesh.facets)[0];
+    const Vec3& p = film_.mesh.points[loop[0]];
+    const Vec3 way = film_.mesh.points[loop[1]] - p;
+    const double here = rim.curve().nearest(p + 0.5 * way);
+    const bool growing = rim.curve().tangent(here).dot(way) > 0.0;
+    BrepFace face{film_.name, std::get<CylinderSurface>(shape_.surface), {}};
+    for (const RimEdges::Step& step : rim.between(0.0, 0.0, growing)) {
+      const BrepEdge& edge = brep_.edges[step.edge];
+      loop_.push_back({step.edge, step.forward,
+                       place_of(point_of(edge.curve, edge.first)),
+                       place_of(point_of(edge.curve, edge.last))});
+    }
+    face.loops.push_back(std::move(loop_));
+    brep_.faces.push_back(std::move(face));
+  }
   /// On the rim, or a new one at the pole.
   int end_vertex(int rim, double b) {
     const Vec3 point = seam_point(shape_, b);
@@ -83,6 +130,10 @@ class TurnedBuilder {
   EdgeCurve seam_curve() const {
     if (const auto* tube = std::get_if<CylinderSurface>(&shape_.surface)) {
       return StraightLine{seam_point(shape_, 0.0), tube->axis};
+    }
+    if (std::holds_alternative<ConeSurface>(shape_.surface)) {
+      const Vec3 start = seam_point(shape_, 0.0);
+      return StraightLine{start, seam_point(shape_, 1.0) - start};
     }
     const auto& ball = std::get<SphereSurface>(shape_.surface);
     return EllipseCurve{ball.center, ball.radius * ball.zero,
@@ -134,6 +185,9 @@ class TurnedBuilder {
 
 void want_seam(const TurnedFilm& film, std::vector<RimEdges>& rims) {
   const SimpleFilm& shape = film.shape;
+  if (shape.is_part) {
+    return;
+  }
   for (const auto& [rim, b] : {std::pair(shape.low_rim, shape.low),
                                std::pair(shape.high_rim, shape.high)}) {
     if (rim >= 0) {

@@ -10,6 +10,7 @@
 #include <Geom_BSplineCurve.hxx>
 #include <Geom_BSplineSurface.hxx>
 #include <Geom_Circle.hxx>
+#include <Geom_ConicalSurface.hxx>
 #include <Geom_CylindricalSurface.hxx>
 #include <Geom_Ellipse.hxx>
 #include <Geom_Line.hxx>
@@ -164,6 +165,10 @@ Handle(Geom_Surface)
   if (const auto* tube = std::get_if<solid::CylinderSurface>(&face.surface)) {
     return new Geom_CylindricalSurface(frame(*tube), scale_ * tube->radius);
   }
+  if (const auto* cone = std::get_if<solid::ConeSurface>(&face.surface)) {
+    return new Geom_ConicalSurface(frame(*cone), cone->angle,
+                                   scale_ * cone->radius);
+  }
   if (const auto* ball = std::get_if<solid::SphereSurface>(&face.surface)) {
     return new Geom_SphericalSurface(frame(*ball), scale_ * ball->radius);
   }
@@ -200,8 +205,10 @@ Handle(Geom2d_Curve) parameter_line(const solid::BrepUse& use, double first,
 
 bool is_inward(const solid::BrepFace& face) {
   const auto* tube = std::get_if<solid::CylinderSurface>(&face.surface);
+  const auto* cone = std::get_if<solid::ConeSurface>(&face.surface);
   const auto* ball = std::get_if<solid::SphereSurface>(&face.surface);
-  return (tube != nullptr && tube->inward) || (ball != nullptr && ball->inward);
+  return (tube != nullptr && tube->inward) ||
+         (cone != nullptr && cone->inward) || (ball != nullptr && ball->inward);
 }
 
 /// The use's edge with its line in the surface's parameters; of a seam, used
@@ -209,9 +216,10 @@ bool is_inward(const solid::BrepFace& face) {
 void ShapeBuilder::add_line(const solid::BrepFace& face,
                             const solid::BrepUse& use,
                             const TopoDS_Face& shape) {
-  const double b_scale =
-      std::holds_alternative<solid::CylinderSurface>(face.surface) ? scale_
-                                                                   : 1.0;
+  const bool b_is_length =
+      std::holds_alternative<solid::CylinderSurface>(face.surface) ||
+      std::holds_alternative<solid::ConeSurface>(face.surface);
+  const double b_scale = b_is_length ? scale_ : 1.0;
   double first = 0.0;
   double last = 1.0;
   curve_of(brep_.edges[use.edge], first, last);

@@ -199,12 +199,15 @@ BandPlace place_on_band(const FilmComplex& complex, int band,
     return {vertex.t, vertex.share};
   }
   if (vertex.kind == VertexKind::OnCurve && vertex.curve == here.outer) {
+    if (here.is_patch()) {
+      return place_on_patch(here, vertex.t);
+    }
     return {vertex.t, 0.0};
   }
   if (vertex.kind == VertexKind::OnCurve && vertex.curve == here.inner) {
     return {here.partner_of_inner(vertex.t), 1.0};
   }
-  // On a side that another polygon shares, whose parameter the vertex has.
+  // On a side that another curve shares, whose parameter the vertex has.
   return nearest_on_band(here, complex.curves, at.place);
 }
 

@@ -18,7 +18,7 @@ namespace meniscus::films {
 enum class FilmKind {
   Branch,  // convex hull of any number of closed curves, less their caps
   Loft,    // band between two closed curves
-  Disk,    // flat start across one closed curve
+  Disk,    // start across one closed curve, around others within it
   Facets   // given, its rims on any number of curves
 };
 
@@ -40,9 +40,9 @@ struct FilmSpec {
 };
 
 /// Solid; carries no tension. A flat disk across a planar closed curve, a ring
-/// between two closed curves, or facets as they are, whose rims lie on curves.
-/// Where polygons have the same side their disks are joined
-/// (evolve/films/shared_sides.h).
+/// between two closed curves, a patch between opposite sides of one, or facets
+/// as they are, whose rims lie on curves. Where polygons and polylines have the
+/// same side their faces are joined (evolve/films/shared_sides.h).
 struct CapSpec {
   std::string name;
   std::string curve;  // of a disk or ring
@@ -55,6 +55,9 @@ struct CapSpec {
   /// Of a disk: planar curves that it ends at too. One that lies within
   /// another's disk is a hole in it, others have disks of their own.
   std::vector<std::string> more = {};
+  /// Instead of a disk the ruled patch between the first and the third of the
+  /// curve's four sides; a cylinder's where these are equal arcs.
+  bool ruled = false;
 
   /// Those that it ends at.
   std::vector<std::string> curves() const {

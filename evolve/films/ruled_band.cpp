@@ -4,8 +4,12 @@
 #include <cmath>
 #include <limits>
 
+#include <fmt/format.h>
+
+#include "core/error.h"
 #include "core/math/golden_section.h"
 #include "evolve/curves/curve_shape.h"
+#include "evolve/films/shared_sides.h"
 
 namespace meniscus::films {
 
@@ -218,6 +222,37 @@ RuledBand match_band(const std::vector<curves::Curve>& curves, int outer,
   return band;
 }
 
+RuledBand match_patch(const std::vector<curves::Curve>& curves, int curve) {
+  const std::size_t sides = sides_of(curves[curve].shape).size();
+  if (sides != 4) {
+    throw InvalidInput(fmt::format(
+        "curve '{}' has {} sides; a face between the first and the third side "
+        "needs a polygon or polyline of four",
+        curves[curve].name, sides));
+  }
+  return {.outer = curve,
+          .inner = curve,
+          .turn = -1.0,
+          .shift = 0.75,
+          .span = 0.25};
+}
+
+BandPlace place_on_patch(const RuledBand& patch, double t) {
+  const double span = patch.span;
+  const double side = std::floor(t / span);
+  const double along = t / span - side;
+  switch (static_cast<int>(side)) {
+    case 0:
+      return {t, 0.0};
+    case 1:
+      return {span, along};
+    case 2:
+      return {patch.partner_of_inner(t), 1.0};
+    default:
+      return {0.0, 1.0 - along};
+  }
+}
+
 Vec3 point_on_band(const RuledBand& band,
                    const std::vector<curves::Curve>& curves, double t,
                    double share) {
@@ -238,18 +273,25 @@ BandPlace nearest_on_band(const RuledBand& band,
     const auto [a, b] = line_at(t);
     return (a + share_along(a, b, at) * (b - a) - at).squaredNorm();
   };
+  const double step = band.span / kMatched;
+  const int last = band.is_patch() ? kMatched : kMatched - 1;
   double best = 0.0;
   double least = distance(0.0);
-  for (int k = 1; k < kMatched; ++k) {
-    const double t = static_cast<double>(k) / kMatched;
+  for (int k = 1; k <= last; ++k) {
+    const double t = k * band.span / kMatched;
     const double found = distance(t);
     if (found < least) {
       best = t;
       least = found;
     }
   }
-  const double step = 1.0 / kMatched;
-  const double t = golden_section(best - step, best + step, distance);
+  double low = best - step;
+  double high = best + step;
+  if (band.is_patch()) {
+    low = std::max(low, 0.0);
+    high = std::min(high, band.span);
+  }
+  const double t = golden_section(low, high, distance);
   const auto [a, b] = line_at(t);
   return {wrapped(t), share_along(a, b, at)};
 }

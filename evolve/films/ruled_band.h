@@ -1,5 +1,5 @@
-/// The ruled surface between two closed curves: straight lines from each point
-/// of one to its partner on the other.
+/// The ruled surface between two closed curves, or between two opposite sides
+/// of one: straight lines from each point of one to its partner on the other.
 #pragma once
 
 #include <vector>
@@ -25,6 +25,11 @@ struct RuledBand {
   double shift = 0.0;  // in [0, 1)
   LengthShares outer_shares;
   LengthShares inner_shares;
+  /// Of the outer curve: lines from t = 0 to here. Below 1 the band is a patch,
+  /// open at both ends.
+  double span = 1.0;
+
+  bool is_patch() const { return span < 1.0; }
 
   double partner_of_outer(double t) const;  // on the inner curve, in [0, 1)
   double partner_of_inner(double t) const;  // on the outer curve, in [0, 1)
@@ -37,6 +42,10 @@ struct RuledBand {
 RuledBand match_band(const std::vector<curves::Curve>& curves, int outer,
                      int inner);
 
+/// Between the first and the third of a curve's four sides, equal parameters
+/// joined. Throws InvalidInput, naming it, for a curve of other sides.
+RuledBand match_patch(const std::vector<curves::Curve>& curves, int curve);
+
 /// At parameter t of the outer curve, `share` of the way to the inner one.
 Vec3 point_on_band(const RuledBand& band,
                    const std::vector<curves::Curve>& curves, double t,
@@ -46,6 +55,9 @@ struct BandPlace {
   double t = 0.0;      // of the outer curve, in [0, 1)
   double share = 0.0;  // of the way to the inner one, in [0, 1]
 };
+
+/// The place of the point at parameter `t` of a patch's own curve.
+BandPlace place_on_patch(const RuledBand& patch, double t);
 
 /// The place on the band nearest to `at`.
 BandPlace nearest_on_band(const RuledBand& band,

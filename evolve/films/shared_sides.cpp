@@ -10,37 +10,49 @@ namespace {
 
 constexpr double kSame = 1e-9;  // x the size of all polygons
 
-const Points& corners_of(const curves::Curve& curve) {
-  static const Points none;
-  const auto* polygon = std::get_if<curves::Polygon>(&curve.shape);
-  return polygon != nullptr ? polygon->points : none;
-}
-
 double reach_of(const std::vector<curves::Curve>& curves) {
   Points all;
   for (const curves::Curve& curve : curves) {
-    const Points& corners = corners_of(curve);
-    all.insert(all.end(), corners.begin(), corners.end());
+    for (const CurveSide& side : sides_of(curve.shape)) {
+      all.push_back(side.from);
+    }
   }
   return all.empty() ? 0.0 : kSame * bounding_diagonal(all);
 }
 
 }  // namespace
 
+std::vector<CurveSide> sides_of(const curves::CurveShape& shape) {
+  std::vector<CurveSide> sides;
+  if (const auto* polygon = std::get_if<curves::Polygon>(&shape)) {
+    const Points& corners = polygon->points;
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+      const Vec3& next = corners[(k + 1) % corners.size()];
+      sides.push_back({corners[k], next, 0.5 * (corners[k] + next)});
+    }
+  } else if (const auto* line = std::get_if<curves::Polyline>(&shape)) {
+    const std::size_t count = line->corners.size();
+    for (std::size_t k = 0; k < count; ++k) {
+      sides.push_back(
+          {line->corners[k], line->corners[(k + 1) % count],
+           curves::point_at(shape, (static_cast<double>(k) + 0.5) /
+                                       static_cast<double>(count))});
+    }
+  }
+  return sides;
+}
+
 std::vector<SharedSide> shared_sides(const std::vector<curves::Curve>& curves) {
   const double reach = reach_of(curves);
-  struct Side {
+  struct Side : CurveSide {
     int curve;
     int number;
-    const Vec3* from;
-    const Vec3* to;
   };
   std::vector<Side> sides;
   for (std::size_t c = 0; c < curves.size(); ++c) {
-    const Points& corners = corners_of(curves[c]);
-    for (std::size_t k = 0; k < corners.size(); ++k) {
-      sides.push_back({static_cast<int>(c), static_cast<int>(k), &corners[k],
-                       &corners[(k + 1) % corners.size()]});
+    int number = 0;
+    for (const CurveSide& side : sides_of(curves[c].shape)) {
+      sides.push_back({side, static_cast<int>(c), number++});
     }
   }
   const auto same = [reach](const Vec3& a, const Vec3& b) {
@@ -51,11 +63,11 @@ std::vector<SharedSide> shared_sides(const std::vector<curves::Curve>& curves) {
     for (std::size_t j = i + 1; j < sides.size(); ++j) {
       const Side& a = sides[i];
       const Side& b = sides[j];
-      if (a.curve == b.curve) {
+      if (a.curve == b.curve || !same(a.middle, b.middle)) {
         continue;
       }
-      const bool along = same(*a.from, *b.from) && same(*a.to, *b.to);
-      if (along || (same(*a.from, *b.to) && same(*a.to, *b.from))) {
+      const bool along = same(a.from, b.from) && same(a.to, b.to);
+      if (along || (same(a.from, b.to) && same(a.to, b.from))) {
         result.push_back({a.curve, a.number, b.curve, b.number, !along});
       }
     }
@@ -71,30 +83,58 @@ SharedRims::SharedRims(const std::vector<curves::Curve>& curves)
   }
 }
 
-int SharedRims::corner(int curve, int k, FilmComplex& complex) {
-  const Points& corners = corners_of(complex.curves[curve]);
-  const Vec3& place = corners[k];
+int SharedRims::corner(int curve, int k, const CurveSide& side, int sides,
+                       FilmComplex& complex) {
   for (const int known : corners_) {
-    if ((complex.mesh.points[known] - place).norm() <= reach_) {
+    if ((complex.mesh.points[known] - side.from).norm() <= reach_) {
       return known;
     }
   }
   corners_.push_back(static_cast<int>(complex.mesh.points.size()));
-  complex.mesh.points.push_back(place);
+  complex.mesh.points.push_back(side.from);
   complex.vertices.push_back(
       {VertexKind::OnCurve, curve,
-       static_cast<double>(k) / static_cast<double>(corners.size())});
+       static_cast<double>(k) / static_cast<double>(sides)});
   return corners_.back();
+}
+
+/// The side's vertices, made where it is new; `inner`: parameters between its
+/// ends.
+const SharedRims::Chain& SharedRims::chain(int curve, const CurveSide& side,
+                                           const Edge& ends,
+                                           const std::vector<double>& inner,
+                                           FilmComplex& complex) {
+  std::vector<Chain>& between = sides_[edge_key(ends[0], ends[1])];
+  for (const Chain& known : between) {
+    if ((known.middle - side.middle).norm() <= reach_) {
+      return known;
+    }
+  }
+  Chain& chain = between.emplace_back();
+  chain.curve = curve;
+  chain.middle = side.middle;
+  chain.from = {ends[0]};
+  const curves::CurveShape& shape = complex.curves[curve].shape;
+  for (const double at : inner) {
+    chain.from.push_back(static_cast<int>(complex.mesh.points.size()));
+    complex.mesh.points.push_back(curves::point_at(shape, at));
+    complex.vertices.push_back({VertexKind::OnCurve, curve, at});
+  }
+  chain.from.push_back(ends[1]);
+  if (ends[0] > ends[1]) {
+    std::reverse(chain.from.begin(), chain.from.end());
+  }
+  return chain;
 }
 
 std::vector<int> SharedRims::rim(int curve, const std::vector<double>& t,
                                  FilmComplex& complex) {
-  const curves::CurveShape shape = complex.curves[curve].shape;
-  const auto n = static_cast<int>(corners_of(complex.curves[curve]).size());
+  const std::vector<CurveSide> sides = sides_of(complex.curves[curve].shape);
+  const auto n = static_cast<int>(sides.size());
   std::vector<int> corners;
   corners.reserve(n);
   for (int k = 0; k < n; ++k) {
-    corners.push_back(corner(curve, k, complex));
+    corners.push_back(corner(curve, k, sides[k], n, complex));
   }
   std::vector<int> around;
   std::size_t next = 0;  // of t
@@ -106,22 +146,7 @@ std::vector<int> SharedRims::rim(int curve, const std::vector<double>& t,
     inner.erase(inner.begin());
     const int a = corners[k];
     const int b = corners[(k + 1) % n];
-    const auto [known, first] = sides_.try_emplace(edge_key(a, b));
-    Chain& chain = known->second;
-    if (first) {
-      chain.curve = curve;
-      chain.from = {a};
-      for (const double at : inner) {
-        chain.from.push_back(static_cast<int>(complex.mesh.points.size()));
-        complex.mesh.points.push_back(curves::point_at(shape, at));
-        complex.vertices.push_back({VertexKind::OnCurve, curve, at});
-      }
-      chain.from.push_back(b);
-      if (a > b) {
-        std::reverse(chain.from.begin(), chain.from.end());
-      }
-    }
-    std::vector<int> way = chain.from;
+    std::vector<int> way = chain(curve, sides[k], {a, b}, inner, complex).from;
     if (a > b) {
       std::reverse(way.begin(), way.end());
     }
@@ -131,14 +156,16 @@ std::vector<int> SharedRims::rim(int curve, const std::vector<double>& t,
 }
 
 void SharedRims::mark_edges(FilmComplex& complex) const {
-  for (const auto& [ends, chain] : sides_) {
-    for (std::size_t k = 0; k + 1 < chain.from.size(); ++k) {
-      ComplexEdge mark;
-      mark.a = chain.from[k];
-      mark.b = chain.from[k + 1];
-      mark.kind = VertexKind::OnCurve;
-      mark.curve = chain.curve;
-      complex.edges.push_back(mark);
+  for (const auto& [ends, chains] : sides_) {
+    for (const Chain& chain : chains) {
+      for (std::size_t k = 0; k + 1 < chain.from.size(); ++k) {
+        ComplexEdge mark;
+        mark.a = chain.from[k];
+        mark.b = chain.from[k + 1];
+        mark.kind = VertexKind::OnCurve;
+        mark.curve = chain.curve;
+        complex.edges.push_back(mark);
+      }
     }
   }
 }

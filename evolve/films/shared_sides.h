@@ -1,15 +1,25 @@
-/// Polygons that share sides: plane faces that meet along edges.
+/// Polygons and polylines that share sides: faces that meet along edges.
 #pragma once
 
 #include <map>
-#include <optional>
 #include <vector>
 
 #include "evolve/films/film_complex.h"
 
 namespace meniscus::films {
 
-/// A side of two polygons that both run between the same two corners.
+/// A straight side or an arc between two corners of a curve.
+struct CurveSide {
+  Vec3 from;
+  Vec3 to;
+  Vec3 middle;  // half its length away from either
+};
+
+/// Of polygons and polylines; others have none.
+std::vector<CurveSide> sides_of(const curves::CurveShape& shape);
+
+/// A side of two curves that both run between the same two corners, the same
+/// way.
 struct SharedSide {
   int first_curve = 0;
   int first_side = 0;  // from corner first_side to the next
@@ -18,13 +28,13 @@ struct SharedSide {
   bool reversed = false;  // run in opposite directions
 };
 
-/// All of them, in order of the curves; corners may be 1e-9 x the polygons'
-/// size apart. Curves of other kinds share none.
+/// All of them, in order of the curves; corners and middles may be 1e-9 x the
+/// curves' size apart.
 std::vector<SharedSide> shared_sides(const std::vector<curves::Curve>& curves);
 
-/// Makes the rims of polygons with shared sides out of one set of vertices: a
-/// corner is one vertex, a side one chain, for all polygons that have it. Each
-/// belongs to the polygon that came first; marked edges say so to refinement
+/// Makes the rims of curves with shared sides out of one set of vertices: a
+/// corner is one vertex, a side one chain, for all curves that have it. Each
+/// belongs to the curve that came first; marked edges say so to refinement
 /// and grooming, which otherwise find rims by their curves.
 class SharedRims {
  public:
@@ -35,7 +45,7 @@ class SharedRims {
     return shares_[static_cast<std::size_t>(curve)] != 0;
   }
 
-  /// The vertices around such a polygon, cut into pieces at the parameters
+  /// The vertices around such a curve, cut into pieces at the parameters
   /// `t` (sample_parameters) where it is the first to have a side.
   std::vector<int> rim(int curve, const std::vector<double>& t,
                        FilmComplex& complex);
@@ -45,15 +55,19 @@ class SharedRims {
 
  private:
   struct Chain {
-    int curve = 0;          // whose vertices these are
+    int curve = 0;  // whose vertices these are
+    Vec3 middle;
     std::vector<int> from;  // smaller corner to larger one, ends included
   };
-  int corner(int curve, int k, FilmComplex& complex);
+  int corner(int curve, int k, const CurveSide& side, int sides,
+             FilmComplex& complex);
+  const Chain& chain(int curve, const CurveSide& side, const Edge& ends,
+                     const std::vector<double>& inner, FilmComplex& complex);
 
   std::vector<char> shares_;
   double reach_ = 0.0;  // corners nearer than this are one [length]
   std::vector<int> corners_;
-  std::map<Edge, Chain> sides_;
+  std::map<Edge, std::vector<Chain>> sides_;  // by corners, smaller first
 };
 
 }  // namespace meniscus::films

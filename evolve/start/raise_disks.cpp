@@ -20,6 +20,7 @@ constexpr double kMostHeight = 2.0;    // the same
 struct Filling {
   std::string name;
   bool film = false;
+  bool holed = false;  // a film that holds other curves, too
 };
 
 std::map<std::string, std::vector<Filling>> fillings_of(
@@ -27,14 +28,13 @@ std::map<std::string, std::vector<Filling>> fillings_of(
   std::map<std::string, std::vector<Filling>> result;
   for (const std::string& name : body.enclosed_by) {
     for (const films::FilmSpec& film : system.films) {
-      if (film.name == name && film.kind == films::FilmKind::Disk &&
-          film.curves.size() == 1) {
-        result[film.curves[0]].push_back({name, true});
+      if (film.name == name && film.kind == films::FilmKind::Disk) {
+        result[film.curves[0]].push_back({name, true, film.curves.size() > 1});
       }
     }
     for (const films::CapSpec& cap : system.caps) {
       if (cap.name == name && !cap.start) {
-        result[cap.curve].push_back({name, false});
+        result[cap.curve].push_back({name});
       }
     }
   }
@@ -141,7 +141,8 @@ void raise_disks(const films::FilmSystem& system, films::FilmComplex& complex) {
           continue;
         }
         double height = kUsualHeight * bulge.width();
-        if (body.volume) {
+        // Between rims of several heights there is volume below it already.
+        if (body.volume && !filling.holed) {
           height = std::min(*body.volume / films / bulge.volume(normal),
                             kMostHeight * bulge.width());
         }

@@ -22,6 +22,7 @@
 #include "evolve/start/cap_faces.h"
 #include "evolve/start/disk_fill.h"
 #include "evolve/start/facet_start.h"
+#include "evolve/start/fill_patch.h"
 #include "evolve/start/loft.h"
 #include "evolve/start/raise_disks.h"
 
@@ -122,7 +123,7 @@ class StartBuilder {
     constexpr double kBytes = 1500.0;  // of a facet
     double area = 0.0;
     for (const films::CapSpec& cap : system_.caps) {
-      if (!cap.start && cap.inner.empty()) {
+      if (!cap.start && !cap.ruled && cap.inner.empty()) {
         for (const std::string& name : cap.curves()) {
           area += polygon_area_vector(points_of(rims_.at(name))).norm();
         }
@@ -256,9 +257,7 @@ class StartBuilder {
         add_loft(film, label);
         break;
       case films::FilmKind::Disk:
-        require_curves(film, 1);
-        fill({rim_of(film.curves[0], film.name)}, label,
-             films::VertexKind::Free);
+        add_disk(film, label);
         break;
       case films::FilmKind::Facets:
         add_sheet(film.name, label, films::VertexKind::Free);
@@ -272,6 +271,15 @@ class StartBuilder {
           fmt::format("film '{}' has {} curves, its kind needs {}", film.name,
                       film.curves.size(), count));
     }
+  }
+
+  /// Within its first curve, around the others.
+  void add_disk(const films::FilmSpec& film, int label) {
+    std::vector<Rim> rims;
+    for (const std::string& name : film.curves) {
+      rims.push_back(rim_of(name, film.name));
+    }
+    fill(rims, label, films::VertexKind::Free);
   }
 
   void add_loft(const films::FilmSpec& film, int label) {
@@ -365,6 +373,10 @@ class StartBuilder {
       rims.push_back(rim_of(name, cap.name));
       loops.push_back(points_of(rims.back()));
     }
+    if (cap.ruled) {
+      add_patch(rims[0], label);
+      return;
+    }
     if (!cap.inner.empty()) {
       add_ring(rims, label);
       return;
@@ -413,6 +425,32 @@ class StartBuilder {
       result_.mesh.points.push_back(filling.mesh.points[ids.size() - 1]);
     }
     for (const Triangle& t : filling.mesh.facets) {
+      add_facet({ids[t[0]], ids[t[1]], ids[t[2]]}, label);
+    }
+  }
+
+  void add_patch(const Rim& rim, int label) {
+    const auto id = static_cast<int>(result_.bands.size());
+    result_.surfaces[label].band = id;
+    result_.bands.push_back(films::match_patch(result_.curves, rim.curve));
+    std::vector<films::BandPlace> around;
+    for (const int v : rim.ids) {
+      around.push_back(films::place_on_band(
+          result_, id, {result_.vertices[v], result_.mesh.points[v]}));
+    }
+    const PatchFilling filling =
+        fill_patch(result_.bands.back(), result_.curves, around, edge_);
+    std::vector<int> ids = rim.ids;
+    for (const films::BandPlace& place : filling.between) {
+      ids.push_back(static_cast<int>(result_.mesh.points.size()));
+      result_.vertices.push_back({.kind = films::VertexKind::OnBand,
+                                  .curve = id,
+                                  .t = place.t,
+                                  .share = place.share});
+      result_.mesh.points.push_back(films::point_on_band(
+          result_.bands[id], result_.curves, place.t, place.share));
+    }
+    for (const Triangle& t : filling.facets) {
       add_facet({ids[t[0]], ids[t[1]], ids[t[2]]}, label);
     }
   }

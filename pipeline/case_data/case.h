@@ -43,6 +43,7 @@ struct Case {
   std::vector<CurveEntry> curves;
   std::vector<FilmEntry> films;
   std::vector<CapEntry> caps;
+  std::vector<FeatureEntry> features;  // whose faces are among the caps
   std::vector<BodyEntry> bodies;
   std::vector<WallEntry> walls;
   std::vector<FieldEntry> fields;

@@ -25,7 +25,8 @@ void check_bodies(const Case& input, CaseProblems& problems);
 void check_case(const Case& input, CaseProblems& problems);
 
 /// Films and solids that start from facets put onto their curves, at the
-/// initial design: rims that find no curve, bodies that stay open.
+/// initial design: rims that find no curve, bodies that stay open; features
+/// that overlap.
 void check_start(const Case& input, const EvaluatedCase& inputs,
                  CaseProblems& problems);
 

@@ -1,7 +1,11 @@
-/// Checks of what films of facets start from.
+/// Checks of what films of facets start from, and of features in their way.
 #include <algorithm>
+#include <set>
+
+#include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/geometry/mesh_checks.h"
 #include "evolve/start/start_complex.h"
 #include "evolve/start/start_edge.h"
 #include "pipeline/case_data/case_checks.h"
@@ -34,14 +38,67 @@ bool has_facets(const Case& input, const BodyEntry& body) {
                      });
 }
 
+namespace {
+
+/// The feature that a face belongs to, by index; -1: none.
+int feature_of(const Case& input, const std::string& face) {
+  for (std::size_t k = 0; k < input.features.size(); ++k) {
+    if (face.rfind(input.features[k].name + "/", 0) == 0) {
+      return static_cast<int>(k);
+    }
+  }
+  return -1;
+}
+
+/// Features whose faces cross.
+void check_overlaps(const Case& input, const SurfaceMesh& start,
+                    CaseProblems& problems) {
+  SurfaceMesh faces;
+  faces.points = start.points;
+  faces.labels = start.labels;
+  std::vector<int> feature;  // per label
+  for (const std::string& label : start.labels) {
+    feature.push_back(feature_of(input, label));
+  }
+  for (std::size_t f = 0; f < start.facets.size(); ++f) {
+    if (feature[start.facet_label[f]] >= 0) {
+      faces.facets.push_back(start.facets[f]);
+      faces.facet_label.push_back(start.facet_label[f]);
+    }
+  }
+  std::set<std::pair<int, int>> told;
+  for (const Finding& finding : check_surface(faces)) {
+    std::set<int> both;
+    for (const std::string& surface : finding.surfaces) {
+      both.insert(feature_of(input, surface));
+    }
+    if (finding.kind != FindingKind::Crossing || both.size() != 2 ||
+        !told.insert({*both.begin(), *both.rbegin()}).second) {
+      continue;
+    }
+    const FeatureEntry& first = input.features[*both.begin()];
+    const FeatureEntry& second = input.features[*both.rbegin()];
+    problems.add(second.line,
+                 fmt::format("solids '{}' and '{}' overlap near ({:.4g}, "
+                             "{:.4g}, {:.4g}); move them apart, or let a film "
+                             "join them",
+                             first.name, second.name, finding.position.x(),
+                             finding.position.y(), finding.position.z()));
+  }
+}
+
+}  // namespace
+
 void check_start(const Case& input, const EvaluatedCase& inputs,
                  CaseProblems& problems) {
-  if (!has_facets(input)) {
+  if (!has_facets(input) && input.features.empty()) {
     return;
   }
   try {
-    start::build_start(inputs.film_system,
-                       start::start_edge(inputs.film_system, inputs.fea_edge));
+    const films::FilmComplex start = start::build_start(
+        inputs.film_system,
+        start::start_edge(inputs.film_system, inputs.fea_edge));
+    check_overlaps(input, start.mesh, problems);
   } catch (const Error& error) {
     const std::string message = error.what();
     problems.add(line_of_start(input, message), message);

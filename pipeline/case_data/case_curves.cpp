@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "evolve/curves/curve_contact.h"
 #include "evolve/films/shared_sides.h"
+#include "pipeline/case_data/case_features.h"
 
 namespace meniscus::case_data {
 
@@ -83,6 +84,7 @@ curves::CurveShape shape_of(const CurveEntry& curve,
     case CurveKind::Copy:
       return copy_of(curve, above, values);
     case CurveKind::Polygon:
+    case CurveKind::OfFeature:
       break;
   }
   return curves::Polygon{points_of(curve, values)};
@@ -132,6 +134,12 @@ std::vector<curves::Curve> curves_of(const Case& input,
   std::vector<curves::Curve> result;
   result.reserve(input.curves.size());
   std::vector<char> bad;  // copies of those are no news
+  const std::size_t no_problems = values.problems().size();
+  if (!values.are_rates()) {
+    check_features(input, values);
+  }
+  const bool features_bad = values.problems().size() > no_problems;
+  const auto of_features = feature_curves(input, values);
   for (const CurveEntry& entry : input.curves) {
     const std::size_t before = values.problems().size();
     if (entry.kind == CurveKind::Copy &&
@@ -141,7 +149,15 @@ std::vector<curves::Curve> curves_of(const Case& input,
       bad.push_back(1);
       continue;
     }
-    curves::Curve curve{entry.name, shape_of(entry, result, values)};
+    curves::Curve curve{entry.name,
+                        entry.kind == CurveKind::OfFeature
+                            ? of_features[entry.feature][entry.of_feature]
+                            : shape_of(entry, result, values)};
+    if (entry.kind == CurveKind::OfFeature && features_bad) {
+      result.push_back(std::move(curve));  // told already
+      bad.push_back(1);
+      continue;
+    }
     if (!values.are_rates() && values.problems().size() == before) {
       try {
         check(entry, curve);
@@ -153,6 +169,9 @@ std::vector<curves::Curve> curves_of(const Case& input,
     }
     bad.push_back(values.problems().size() > before ? 1 : 0);
     result.push_back(std::move(curve));
+  }
+  if (!values.are_rates() && !features_bad) {
+    check_feature_rims(input, result, values);
   }
   return result;
 }

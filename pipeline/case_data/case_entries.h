@@ -61,7 +61,8 @@ enum class CurveKind {
   Polygon,
   Spline,
   Polyline,
-  Copy
+  Copy,
+  OfFeature  // an edge of a boss, flange, lug or block
 };
 
 /// A corner of a polyline, or what the arc between two corners goes through.
@@ -89,6 +90,8 @@ struct CurveEntry {
   std::vector<PathPoint> points;   // of polygon, spline, polyline; or
   std::vector<Vec3> fixed_points;  // of polygon and spline: from a file
   CopyEntry copy;
+  int feature = -1;  // index of the feature, and of its curves
+  int of_feature = -1;
   SourceLine line = 0;
 };
 
@@ -109,6 +112,38 @@ struct FilmEntry {
 struct CapEntry {
   films::CapSpec spec;
   bool is_file = false;  // else a flat disk
+  SourceLine line = 0;
+};
+
+enum class FeatureKind { Boss, Flange, Lug, Block };
+
+/// Where a film grows from a boss: the circle of its seat, of its base, or one
+/// around it.
+struct FeatureRim {
+  enum class Place { Seat, Base, Height };
+  Place place = Place::Base;
+  Quantity height;  // above the base
+};
+
+/// A parametric solid that films grow from: its curves NAME/... and its faces,
+/// solids NAME/..., are entries of their own (pipeline/case_data/
+/// feature_shapes.h). What the kind does not need is empty.
+struct FeatureEntry {
+  std::string name;
+  FeatureKind kind = FeatureKind::Boss;
+  QuantityVector at, axis;
+  QuantityVector across;  // of flange, block: of its width; of lug: to its foot
+  Quantity radius, height, thickness, length;
+  std::optional<Quantity> bore, base_radius, depth, chamfer;
+  std::optional<Quantity> width;  // of lug: of its foot
+  std::optional<Quantity> corner_radius;
+  QuantityVector size;
+  std::vector<QuantityVector> holes;  // centres
+  Quantity hole_radius;
+  std::vector<FeatureRim> rims;         // of boss: one or two, base to seat
+  std::vector<std::string> rim_curves;  // of flange: in its top face
+  std::vector<std::string> open;        // faces of block that films close
+  bool round = false;                   // of flange
   SourceLine line = 0;
 };
 

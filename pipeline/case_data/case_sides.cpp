@@ -8,6 +8,7 @@
 
 #include "evolve/films/shared_sides.h"
 #include "pipeline/case_data/case_checks.h"
+#include "pipeline/case_data/feature_shapes.h"
 
 namespace meniscus::case_data {
 
@@ -49,7 +50,7 @@ std::vector<std::string> curves_of_surface(const films::FilmSystem& system,
 
 using SurfacesAtSides = std::map<SideName, std::vector<std::string>>;
 
-/// Surfaces of the body at each side of the polygons that bound them.
+/// Surfaces of the body at each side of the curves that bound them.
 SurfacesAtSides surfaces_at_sides(const films::FilmSystem& system,
                                   const films::BodySpec& body,
                                   const std::map<SideName, SideName>& first) {
@@ -58,11 +59,12 @@ SurfacesAtSides surfaces_at_sides(const films::FilmSystem& system,
     for (const std::string& name : curves_of_surface(system, surface)) {
       for (int c = 0; c < static_cast<int>(system.curves.size()); ++c) {
         const curves::Curve& curve = system.curves[static_cast<std::size_t>(c)];
-        const auto* polygon = std::get_if<curves::Polygon>(&curve.shape);
-        if (curve.name != name || polygon == nullptr) {
+        if (curve.name != name) {
           continue;
         }
-        for (int k = 0; k < static_cast<int>(polygon->points.size()); ++k) {
+        const auto sides =
+            static_cast<int>(films::sides_of(curve.shape).size());
+        for (int k = 0; k < sides; ++k) {
           const auto at = first.find({c, k});
           result[at == first.end() ? SideName(c, k) : at->second].push_back(
               surface);
@@ -95,8 +97,8 @@ std::string open_sides_text(const films::FilmSystem& system,
                             const SurfacesAtSides& beside) {
   const curves::Curve& curve =
       system.curves[static_cast<std::size_t>(sides.front().first)];
-  const Points& corners = std::get<curves::Polygon>(curve.shape).points;
-  const auto k = static_cast<std::size_t>(sides.front().second);
+  const films::CurveSide side = films::sides_of(
+      curve.shape)[static_cast<std::size_t>(sides.front().second)];
   const std::string more =
       sides.size() == 1
           ? ""
@@ -104,32 +106,47 @@ std::string open_sides_text(const films::FilmSystem& system,
   const auto face = beside.find(sides.front());
   return fmt::format(
       "the side from {} to {} of curve '{}'{}: {} of its surfaces meet{} there "
-      "({}), expected two; {}faces join where both polygons have the same two "
+      "({}), expected two; {}faces join where both curves have the same two "
       "corners next to each other: add a corner where a face ends amid a side",
-      text(corners[k]), text(corners[(k + 1) % corners.size()]), curve.name,
-      more, surfaces.size(), surfaces.size() == 1 ? "s" : "",
-      fmt::join(surfaces, ", "),
+      text(side.from), text(side.to), curve.name, more, surfaces.size(),
+      surfaces.size() == 1 ? "s" : "", fmt::join(surfaces, ", "),
       face == beside.end()
           ? ""
           : fmt::format("add '{}' to enclosed_by, or: ", face->second.front()));
 }
 
-}  // namespace
-
-bool may_join_by_sides(const Case& input, const std::string& curve) {
-  std::set<std::string> polygons;  // across which there are caps
-  for (const CapEntry& cap : input.caps) {
-    for (const std::string& name : cap.spec.curves()) {
-      if (std::any_of(input.curves.begin(), input.curves.end(),
-                      [&](const CurveEntry& entry) {
-                        return entry.name == name &&
-                               entry.kind == CurveKind::Polygon;
-                      })) {
-        polygons.insert(name);
+/// Polygons and polylines, by name; of features the edges that are such.
+std::set<std::string> curves_with_sides(const Case& input) {
+  std::set<std::string> result;
+  for (const CurveEntry& entry : input.curves) {
+    if (entry.kind == CurveKind::Polygon || entry.kind == CurveKind::Polyline) {
+      result.insert(entry.name);
+    }
+  }
+  for (const FeatureEntry& feature : input.features) {
+    for (const FeatureCurve& curve : feature_shapes(feature, {}).curves) {
+      if (std::holds_alternative<PathOfDuals>(curve.shape)) {
+        result.insert(curve.name);
       }
     }
   }
-  return polygons.count(curve) != 0 && polygons.size() > 2;
+  return result;
+}
+
+}  // namespace
+
+bool may_join_by_sides(const Case& input, const std::string& curve) {
+  const std::set<std::string> sided = curves_with_sides(input);
+  std::set<std::string> rims = {
+      curve};  // and those across which there are caps
+  for (const CapEntry& cap : input.caps) {
+    for (const std::string& name : cap.spec.curves()) {
+      if (sided.count(name) != 0) {
+        rims.insert(name);
+      }
+    }
+  }
+  return sided.count(curve) != 0 && rims.size() > 2;
 }
 
 void check_sides(const Case& input, const films::FilmSystem& system,

@@ -1,4 +1,4 @@
-/// Plane faces that meet along the sides of polygons.
+/// Faces that meet along the sides of polygons and polylines.
 #pragma once
 
 #include <string>
@@ -8,12 +8,12 @@
 
 namespace meniscus::case_data {
 
-/// Is the curve a polygon whose caps may be closed by other faces, side by
-/// side? So it is where it and two more polygons have caps, as faces of a
+/// Is the curve one of sides, at which other faces may close what ends there,
+/// side by side? So it is where two more such curves have caps, as faces of a
 /// wedge do.
 bool may_join_by_sides(const Case& input, const std::string& curve);
 
-/// Tells of bodies whose faces leave a polygon's side open, or meet there more
+/// Tells of bodies whose faces leave a curve's side open, or meet there more
 /// than two at a time.
 void check_sides(const Case& input, const films::FilmSystem& system,
                  const CaseValues& values);

@@ -71,6 +71,19 @@ double CaseValues::at(const Quantity& quantity) const {
   }
 }
 
+Dual1 CaseValues::dual(const Quantity& quantity) const {
+  if (!are_rates()) {
+    return {at(quantity)};
+  }
+  Dual1 result(quantity.expression.evaluate(values_));
+  const double rate = at(quantity);
+  if (rate != 0.0) {
+    result.varies = true;
+    result.gradient[0] = rate;
+  }
+  return result;
+}
+
 Expression CaseValues::of_place(const PlaceQuantity& place_quantity) const {
   const Quantity& quantity = place_quantity.quantity;
   if (!place_quantity.of_place) {

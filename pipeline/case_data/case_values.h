@@ -34,6 +34,9 @@ class CaseValues {
     return {at(vector[0]), at(vector[1]), at(vector[2])};
   }
 
+  /// Value and, of rates, derivative: for what is not copied but computed.
+  Dual1 dual(const Quantity& quantity) const;
+
   /// The value; when it has one that is not `good`, what it must be is told.
   template <class Condition>
   double at(const Quantity& quantity, const Condition& good,

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "pipeline/case_data/case_checks.h"
+#include "pipeline/reader/case_reader_features.h"
 #include "pipeline/reader/case_reader_tables.h"
 #include "pipeline/reader/facet_file.h"
 
@@ -52,10 +53,11 @@ const std::vector<FilmRow>& film_kinds() {
       {"disk",
        films::FilmKind::Disk,
        {{"curves"}, {"tension"}},
-       "across one",
+       "across the first, around the others, which lie within it as seen along "
+       "it",
        1,
-       1,
-       "a disk needs one"},
+       std::size_t(-1),
+       "a disk needs one or more"},
       {"facets",
        films::FilmKind::Facets,
        {{"vertices", "facets"}, {"curves", "within", "tension"}},
@@ -73,19 +75,27 @@ struct SolidRow {
   std::string_view doc;
 };
 
+/// Faces, then features, which are made of such.
+std::vector<SolidRow> with_features(std::vector<SolidRow> rows) {
+  for (const FeatureRow& row : feature_kinds()) {
+    rows.push_back({row.name, row.keys, row.doc});
+  }
+  return rows;
+}
+
 const std::vector<SolidRow>& solid_kinds() {
-  static const std::vector<SolidRow> kinds = {
-      {"cap", {{"curve"}, {"holes"}}, "flat disk across a planar curve"},
-      {"ring",
-       {{"curve", "inner"}, {}},
-       "band between two curves, flat where they lie in one plane"},
-      {"sides",
-       {{"curves"}, {}},
-       "the plane faces between the sides of two polygons"},
-      {"file",
-       {{"file"}, {"curves", "surface", "scale", "within"}},
-       "facets of an STL, OBJ or Surface Evolver file, which stay as they "
-       "are"}};
+  static const std::vector<SolidRow> kinds = with_features(
+      {{"cap", {{"curve"}, {"holes"}}, "flat disk across a planar curve"},
+       {"ring",
+        {{"curve", "inner"}, {}},
+        "band between two curves, flat where they lie in one plane"},
+       {"sides",
+        {{"curves"}, {}},
+        "the plane faces between the sides of two polygons"},
+       {"file",
+        {{"file"}, {"curves", "surface", "scale", "within"}},
+        "facets of an STL, OBJ or Surface Evolver file, which stay as they "
+        "are"}});
   return kinds;
 }
 
@@ -349,11 +359,58 @@ TableSpec solid_table() {
         "of cap: curves in its plane that it leaves open"},
        {"curves", K::Names, D::None, false,
         "of sides: two polygons of as many corners; of file: those that its "
-        "rims lie on"},
+        "rims lie on; of flange: those in its top face that films grow from"},
        {"file", K::Text, D::None, false, "of file: as of films"},
        {"surface", K::Name, D::None, false, "of file: as of films"},
        {"scale", K::Constant, D::None, false, "of file: as of films"},
-       {"within", K::Constant, D::Length, false, "of file: as of films"}}};
+       {"within", K::Constant, D::Length, false, "of file: as of films"},
+       {"at", K::Vector, D::Length, false,
+        "of boss: the middle of its seat; of flange: of its top face; of lug: "
+        "of its bore; of block: its own"},
+       {"axis", K::Vector, std::nullopt, false,
+        "of boss, flange: out of seat or top face; of lug: of its bore; of "
+        "block: to its top, z when left out; any length but 0"},
+       {"across", K::Vector, std::nullopt, false,
+        "of flange: direction of its width; of block: to its right; x when "
+        "left out"},
+       {"foot", K::Vector, std::nullopt, false,
+        "of lug: direction from the bore to the foot, made normal to axis"},
+       {"radius", K::Quantity, D::Length, false,
+        "of boss: at the seat; of lug: of its round end; of flange: a round "
+        "one's"},
+       {"base_radius", K::Quantity, D::Length, false,
+        "of boss: at the base; radius when left out"},
+       {"height", K::Quantity, D::Length, false,
+        "of boss: from the base to the seat"},
+       {"bore", K::Quantity, D::Length, false,
+        "of boss, lug: the bore's radius; of boss none when left out"},
+       {"depth", K::Quantity, D::Length, false,
+        "of boss: of a bore that does not go through"},
+       {"chamfer", K::Quantity, D::Length, false,
+        "of boss: of the bore's edge at the seat, at 45 degrees"},
+       {"rims", K::BossRims, D::Length, false,
+        "of boss: where films begin: [\"base\"], when left out, where the "
+        "liquid takes over, or two, of \"base\", \"seat\" and heights "
+        "above the base, between which it goes around; curves NAME/base, "
+        "NAME/seat, NAME/rim_1, NAME/rim_2"},
+       {"thickness", K::Quantity, D::Length, false, "of flange, lug"},
+       {"width", K::Quantity, D::Length, false,
+        "of flange: along across; of lug: of its foot, twice radius when left "
+        "out"},
+       {"length", K::Quantity, D::Length, false,
+        "of flange: at right angles to its width; of lug: from the bore's "
+        "middle to the foot"},
+       {"corner_radius", K::Quantity, D::Length, false,
+        "of flange: sharp when left out"},
+       {"hole_centers", K::Vectors, D::Length, false,
+        "of flange: anywhere on the holes' axes"},
+       {"hole_radius", K::Quantity, D::Length, false,
+        "of flange: of its holes"},
+       {"size", K::Vector, D::Length, false,
+        "of block: along across, at right angles to both, and along axis"},
+       {"open", K::Names, D::None, false,
+        "of block: faces that it does not have; films end at the curves of "
+        "these names"}}};
 }
 
 void read_films(CaseContext& context, const toml::table& root,
@@ -364,20 +421,23 @@ void read_films(CaseContext& context, const toml::table& root,
   }
 }
 
-void read_solids(CaseContext& context, const toml::table& root,
+void read_solids(CaseContext& context, const std::vector<CaseTable>& solids,
                  case_data::Case& result) {
   const std::vector<std::string> known = curve_names(result);
-  for (const CaseTable& table : named_tables(context, root, "solids")) {
-    case_data::CapEntry cap = read_solid(context, table, known, result);
+  for (const CaseTable& table : solids) {
     for (const case_data::FilmEntry& film : result.films) {
-      if (film.spec.name == cap.spec.name) {
+      if (film.spec.name == table.name()) {
         context.problems.add(
             table.line(), fmt::format("'{}' is both a film and a solid; rename "
                                       "one, or loads could not tell them apart",
-                                      cap.spec.name));
+                                      table.name()));
       }
     }
-    result.caps.push_back(std::move(cap));
+    if (is_feature(table)) {
+      add_feature_faces(table.name(), result);
+    } else {
+      result.caps.push_back(read_solid(context, table, known, result));
+    }
   }
 }
 

@@ -7,6 +7,7 @@
 
 #include "pipeline/case_data/case_checks.h"
 #include "pipeline/case_data/case_curves.h"
+#include "pipeline/reader/case_reader_features.h"
 #include "pipeline/reader/case_reader_tables.h"
 
 namespace meniscus::reader {
@@ -120,7 +121,8 @@ void read_bodies(CaseContext& context, const toml::table& root,
   for (const CaseTable& table : named_tables(context, root, "bodies")) {
     case_data::BodyEntry body{.name = table.name(), .line = table.line()};
     std::set<std::string> seen;
-    for (const std::string& surface : table.names("enclosed_by")) {
+    for (const std::string& surface :
+         with_feature_faces(result, table.names("enclosed_by"))) {
       if (!contains(surfaces, surface)) {
         context.problems.unknown(table.line("enclosed_by"), "film or solid",
                                  surface, surfaces);
@@ -164,8 +166,10 @@ void read_bodies(CaseContext& context, const toml::table& root,
 void read_geometry(CaseContext& context, const toml::table& root,
                    case_data::Case& result) {
   read_curves(context, root, result);
+  const std::vector<CaseTable> solids = named_tables(context, root, "solids");
+  read_features(context, solids, result);
   read_films(context, root, result);
-  read_solids(context, root, result);
+  read_solids(context, solids, result);
   if (context.problems.empty()) {
     case_data::merge_curves(result, context.problems);
   }

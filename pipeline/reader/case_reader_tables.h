@@ -44,13 +44,14 @@ const std::string* file_text(CaseContext& context, const CaseTable& table,
 /// The ending of a file's name in lower case: ".step".
 std::string ending_of(const std::string& path);
 
-/// After the curves; solids after the films.
+/// After curves and features; solids, of their own tables, after the films.
 void read_films(CaseContext& context, const toml::table& root,
                 case_data::Case& result);
-void read_solids(CaseContext& context, const toml::table& root,
+void read_solids(CaseContext& context, const std::vector<CaseTable>& solids,
                  case_data::Case& result);
 
-/// Curves, films, solids, materials, bodies, in this order; sets bodies_good.
+/// Curves, features, films, solids, materials, bodies, in this order; sets
+/// bodies_good.
 void read_geometry(CaseContext& context, const toml::table& root,
                    case_data::Case& result);
 

@@ -49,6 +49,8 @@ const char* type_text(const KeySpec& key) {
       return "3 quantities of x, y, z";
     case K::Axes:
       return "2 directions";
+    case K::BossRims:
+      return "base, seat or quantity";
     case K::Bounds:
       return "2 constants";
     case K::Constants:
@@ -201,6 +203,8 @@ Json type_schema(const KeySpec& key) {
                         {"additionalProperties", false}};
       return array({{"anyOf", {point, arc, repeated("at", point)}}}, 1, 0);
     }
+    case K::BossRims:
+      return array(quantity, 1, 2);
     case K::Bounds:
       return array(quantity, 2, 2);
     case K::Constants:

@@ -79,7 +79,7 @@ std::size_t plane_count(const SurfaceMesh& mesh, int label) {
 bool is_flat(const films::CapSpec& cap, const films::FilmSystem& system,
              const SurfaceMesh& mesh) {
   const int label = mesh.label_of(cap.name);
-  if ((cap.inner.empty() && !cap.start) || label < 0) {
+  if ((cap.inner.empty() && !cap.start && !cap.ruled) || label < 0) {
     return true;
   }
   const std::size_t planes = most_planes(cap, system);
@@ -159,18 +159,19 @@ void tell(const StepExport& options, const solid::FilmSolidReport& film,
   const std::string& unit = options.unit;
   monitor.log(
       Severity::Info,
-      fmt::format("{}, {}, {}, {}; valid closed solid of {:.6g} {}3",
+      fmt::format("{}, {}, {}, {}, {}; valid closed solid of {:.6g} {}3",
                   number_of(film.patches, "B-spline face"),
                   number_of(film.planes, "plane"),
                   number_of(film.cylinders, "cylinder"),
+                  number_of(film.cones, "cone"),
                   number_of(film.spheres, "sphere"), step.volume, unit));
   for (const solid::SimpleFace& face : film.simple) {
-    monitor.log(Severity::Info,
-                fmt::format("{} is a {}{}; the film leaves it by {:.2g} {} at "
-                            "most ({:.2g} of its edge)",
-                            face.film, face.shape,
-                            face.shape == "plane" ? "" : " " + unit, face.off,
-                            unit, face.off / options.edge));
+    monitor.log(
+        Severity::Info,
+        fmt::format("{} is a {}{}; the film leaves it by {:.2g} {} at "
+                    "most ({:.2g} of its edge)",
+                    face.film, face.shape, face.has_radius ? " " + unit : "",
+                    face.off, unit, face.off / options.edge));
   }
   monitor.log(
       Severity::Info,
@@ -210,7 +211,7 @@ void export_step(const std::filesystem::path& file,
     if (is_flat(cap, system, mesh)) {
       input.caps.push_back(cap.name);
     }
-    if (!cap.inner.empty() || cap.start) {
+    if (!cap.inner.empty() || cap.start || cap.ruled) {
       input.creased.push_back(cap.name);
     }
   }

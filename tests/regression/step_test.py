@@ -233,7 +233,7 @@ class Step(program.ProgramTest):
                             "--set", f"resolution.film={edge}")
         file, said = self.export(run)
         figures = [re.search(pattern, said) for pattern in (
-            rf"(\d+) B-spline faces, (\d+) planes, 0 cylinders, 0 spheres; "
+            rf"(\d+) B-spline faces, (\d+) planes, 0 cylinders, 0 cones, 0 spheres; "
             rf"valid closed solid of {NUMBER} mm3",
             rf"gap at edges {NUMBER} mm .*\({NUMBER} of its edge\)",
             rf"tangent breaks .* {NUMBER} degrees")]
@@ -354,7 +354,7 @@ Save "{can}";
 
     def test_post_is_a_cylinder(self):
         file, said = self.simple(POST % "")
-        self.assertIn("0 B-spline faces, 2 planes, 1 cylinder, 0 spheres", said)
+        self.assertIn("0 B-spline faces, 2 planes, 1 cylinder, 0 cones, 0 spheres", said)
         self.assertIn("skin is a cylinder of radius 20 mm", said)
         self.assertEqual(surface_kinds(file), {"Plane": 2, "Cylinder": 1})
         count, volume = gmsh_volume(file)
@@ -368,7 +368,7 @@ Save "{can}";
 
     def test_drop_is_a_sphere(self):
         file, said = self.simple(DROP)
-        self.assertIn("0 B-spline faces, 1 plane, 0 cylinders, 1 sphere", said)
+        self.assertIn("0 B-spline faces, 1 plane, 0 cylinders, 0 cones, 1 sphere", said)
         self.assertEqual(surface_kinds(file), {"Plane": 1, "Sphere": 1})
         count, volume = gmsh_volume(file)
         self.assertEqual(count, 1)

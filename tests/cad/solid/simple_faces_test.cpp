@@ -96,11 +96,33 @@ TEST_F(SimpleFaces, ClosedFilmIsAWholeSphere) {
   EXPECT_NEAR(enclosed_volume(read) / exact, 1.0, 0.01);
 }
 
+TEST_F(SimpleFaces, LinesBetweenTwoCirclesAreACone) {
+  for (const double slope : {0.1, -0.3, 1.2}) {
+    const auto radius = [slope](double z) { return 55.0 + slope * z; };
+    const solid::FilmSolid solid = solid_of(spool(36, 40.0, radius));
+    EXPECT_EQ(solid.report.cones, 1) << slope;
+    EXPECT_EQ(solid.report.patches, 0);
+    const double a = radius(-20.0);
+    const double b = radius(20.0);
+    const double exact = kPi * 40.0 / 3.0 * (a * a + a * b + b * b);
+    const double other =
+        kPi * 40.0 / 3.0 *
+        (std::pow(radius(0.0), 2) + radius(0.0) * radius(40.0) +
+         std::pow(radius(40.0), 2));
+    const double volume = written(solid).volume;
+    EXPECT_NEAR(std::min(std::abs(volume / exact - 1.0),
+                         std::abs(volume / other - 1.0)),
+                0.0, kExact);
+    EXPECT_THAT(text(), testing::HasSubstr("CONICAL_SURFACE"));
+  }
+  // A film that bulges between them is none.
+  const solid::FilmSolid bulged = solid_of(
+      spool(36, 40.0, [](double z) { return 15.0 + 0.1 * z + 2e-3 * z * z; }));
+  EXPECT_EQ(bulged.report.cones, 0);
+  EXPECT_EQ(bulged.report.patches, 4);
+}
+
 TEST_F(SimpleFaces, FlatFilmIsAPlane) {
-  const solid::FilmSolid solid =
-      solid_of(spool(36, 40.0, [](double z) { return 15.0 + 0.1 * z; }));
-  EXPECT_EQ(solid.report.cylinders, 0);  // a cone is none
-  EXPECT_EQ(solid.report.patches, 4);
   FilmPart tube = spool(36, 40.0, [](double) { return 15.0; });
   tube.caps = {"bottom"};  // the top is a film across its rim
   const solid::FilmSolid closed = solid_of(tube);

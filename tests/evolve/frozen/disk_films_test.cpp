@@ -78,6 +78,37 @@ TEST(DiskFilm, TwoOnOneCurveMakeALens) {
   EXPECT_GT(highest(model), 0.5);
 }
 
+// Between a circle and a smaller one above it the film is a catenoid, r =
+// c cosh(z / c) of area pi c^2 (u + sinh u cosh u) up to z = c u.
+TEST(DiskFilm, AroundAnotherCurveIsACatenoid) {
+  constexpr double kNeck = 0.45;
+  const double low = std::acosh(1.0 / kNeck);
+  const double high = std::acosh(0.5 / kNeck);
+  const auto area_to = [](double u) {
+    return kPi * kNeck * kNeck * (u + std::sinh(u) * std::cosh(u));
+  };
+  films::FilmSystem system = cap_under_film({}, 0.0);
+  system.curves.push_back(
+      {"hole",
+       curves::Circle{Vec3(0, 0, kNeck * (low - high)), Vec3::UnitZ(), 0.5}});
+  system.films[0].curves = {"rim", "hole"};
+  system.caps.push_back({"lid", "hole"});
+  system.bodies[0].enclosed_by.emplace_back("lid");
+  std::vector<double> errors;
+  for (const int refinements : {0, 1, 2}) {
+    const frozen::FilmModel model = frozen::FilmModel::freeze(
+        system, {.edge = kEdge, .refinements = refinements});
+    ASSERT_FALSE(model.reference().failure)
+        << model.reference().failure->message;
+    errors.push_back(std::abs(
+        model.reference().report.area / (area_to(low) - area_to(high)) - 1.0));
+  }
+  EXPECT_LT(errors[2], 0.1 * kFacets);
+  constexpr double kSecondOrder = 3.5;  // of facets: 4
+  EXPECT_GT(errors[0] / errors[1], kSecondOrder);
+  EXPECT_GT(errors[1] / errors[2], kSecondOrder);
+}
+
 // Two lofts meet on a curve that both name: one body, closed, and a kink where
 // the curve holds them.
 TEST(JoinedFilms, TwoLoftsShareTheirMiddleCurve) {

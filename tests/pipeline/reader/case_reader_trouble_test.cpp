@@ -203,8 +203,6 @@ const Trouble kMistakes[] = {
     {"CurveTwice", "curves = [\"base\", \"head\"]",
      "curves = [\"base\", \"head\", \"base\"]",
      "26: films.skin names curve 'base' twice"},
-    {"DiskOfTwo", "kind = \"branch\"", "kind = \"disk\"",
-     "26: films.skin names 2 curves; a disk needs one"},
     {"OpenBody", "[\"skin\", \"foot_pad\", \"head_pad\"]",
      "[\"skin\", \"foot_pad\"]",
      "37: body 'part' is not closed at curve 'head': 1 of its surfaces meets "
@@ -479,6 +477,14 @@ TEST(CaseTrouble, DotsInTextAreNoKeys) {
   EXPECT_THAT(
       problems_of(changed(strut(), "\"A strut\"", "'''\n" + dots + "'''")),
       IsEmpty());
+}
+
+TEST(CaseTrouble, ALoftNeedsTwoCurves) {
+  const std::string text =
+      changed(strut(), "kind = \"branch\"\ncurves = [\"base\", \"head\"]",
+              "kind = \"loft\"\ncurves = [\"base\"]");
+  EXPECT_EQ(problems_of(text).front(),
+            "case.toml:26: films.skin names 1 curve; a loft needs two");
 }
 
 TEST(CaseTrouble, RandomDamageEndsInAMessage) {
