@@ -38,6 +38,7 @@ struct Nodes {
 
 Nodes read_nodes(const NodalPeakInput& in) {
   Nodes nodes;
+  nodes.states.reserve(in.states.size());
   for (const StressState& state : in.states) {
     NodalState here;
     here.points = element::point_stress(
@@ -177,6 +178,7 @@ void differentiate_peak(const NodalPeakInput& in, const Nodes& nodes,
                         const Values& values, NodalPeak& peak) {
   // 1. Backwards from the bound to both readings' stresses.
   std::vector<element::PointCovector> by;
+  by.reserve(nodes.states.size());
   for (const NodalState& state : nodes.states) {
     by.emplace_back(in.mesh, state.points);
   }

@@ -31,6 +31,7 @@ ResponsePartials nodal_peak(const ResponseTask& task,
                             const functionals::NodeCriterion& criterion) {
   const ResponseContext& fields = task.fields;
   std::vector<functionals::StressState> states;
+  states.reserve(load_cases.size());
   for (const int c : load_cases) {
     states.push_back({fields.inputs.load_cases[static_cast<std::size_t>(c)],
                       fields.solution.displacements[c]});
@@ -47,6 +48,7 @@ ResponsePartials nodal_peak(const ResponseTask& task,
 
 ResponsePartials stress_ratio(const ResponseTask& task) {
   std::vector<double> allowable;
+  allowable.reserve(task.fields.inputs.materials.size());
   for (const element::Material& material : task.fields.inputs.materials) {
     allowable.push_back(task.response.allowable
                             ? *task.response.allowable
@@ -60,6 +62,7 @@ ResponsePartials stress_ratio(const ResponseTask& task) {
 
 ResponsePartials fatigue(const ResponseTask& task) {
   std::vector<functionals::Endurance> endurance;
+  endurance.reserve(task.fields.inputs.materials.size());
   for (const element::Material& material : task.fields.inputs.materials) {
     endurance.push_back({.limit = material.endurance_limit.value(),
                          .tensile = material.tensile_strength.value_or(0.0),

@@ -67,6 +67,7 @@ std::vector<int> read_load_cases_of(CaseContext& context,
                                     const CaseTable& table,
                                     const case_data::Case& result) {
   std::vector<std::string> known;
+  known.reserve(result.load_cases.size());
   for (const case_data::LoadCaseEntry& entry : result.load_cases) {
     known.push_back(entry.name);
   }
@@ -117,6 +118,7 @@ std::vector<int> over_load_cases(const case_data::ResponseEntry& of,
                                  const std::vector<int>& load_cases,
                                  case_data::Case& result) {
   std::vector<int> parts;
+  parts.reserve(load_cases.size());
   for (const int load_case : load_cases) {
     if (own && of.load_case == load_case) {
       parts.push_back(*own);

@@ -86,6 +86,26 @@ kind = "inertia"
 axis = [0, 1, 0]
 through = ["lean", 0, "foot / 2"]
 
+[responses.supports]
+kind = "overhang"
+direction = ["lean / 10", 0, 1]
+angle = "70 deg"
+width = "40 deg"
+base = ["foot_pad"]
+
+[responses.undercut]
+kind = "draft"
+direction = ["lean / 10", 1, 0.2]
+angle = "30 deg"
+width = "25 deg"
+
+[responses.stuck]
+kind = "draft"
+on = "skin"
+direction = [0, 0, -1]
+angle = "40 deg"
+width = "30 deg"
+
 [study])toml");
 }
 
@@ -106,7 +126,7 @@ TEST(StrengthResponses, PartsOfEnvelopesStandBeforeThem) {
               ElementsAre("sway", "mass", "stress[service]", "stress[back]",
                           "stress[warm]", "stress", "pull", "life", "crack",
                           "sway[back]", "sway[warm]", "swing", "least_swing",
-                          "spin", "turn"));
+                          "spin", "turn", "supports", "undercut", "stuck"));
 }
 
 TEST(StrengthResponses, BoundPeaksFromAbove) {
@@ -160,6 +180,15 @@ TEST(StrengthResponses, MistakesAreToldByLine) {
               Contains(HasSubstr("'sweep'")));
   EXPECT_THAT(told("of = \"sway\"", "responses = [\"sway\", \"mass\"]"),
               Contains(HasSubstr("'sway' and 'mass' are of different units")));
+  EXPECT_THAT(told("direction = [0, 0, -1]", "direction = [0, 0, 0]"),
+              Contains(HasSubstr("responses.stuck.direction has length 0")));
+  EXPECT_THAT(told("angle = \"40 deg\"", "angle = \"95 deg\""),
+              Contains(HasSubstr("angle is 95 degrees; expected one above 0")));
+  EXPECT_THAT(told("width = \"30 deg\"", "width = \"50 deg\""),
+              Contains(HasSubstr("width is 50 degrees; expected a part of the "
+                                 "angle, 40 degrees")));
+  EXPECT_THAT(told("base = [\"foot_pad\"]", "base = [\"foot_pat\"]"),
+              Contains(HasSubstr("'foot_pat'")));
   EXPECT_THAT(told("measure = \"tension\"", "measure = \"rms\""),
               Contains(HasSubstr("it is one of von_mises|tension")));
   EXPECT_THAT(told("excess = 0.1\n\n[responses.life]",
