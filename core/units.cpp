@@ -28,7 +28,7 @@ struct DimensionRow {
   const char* name;
   UnitPowers powers;
 };
-constexpr std::array<DimensionRow, 15> kDimensions = {{
+constexpr std::array<DimensionRow, 16> kDimensions = {{
     {Dimension::None, "number", {}},
     {Dimension::Length, "length", {.length = 1}},
     {Dimension::Angle, "angle", {}},
@@ -45,6 +45,9 @@ constexpr std::array<DimensionRow, 15> kDimensions = {{
     {Dimension::Time, "time", {.time = 1}},
     {Dimension::Acceleration, "acceleration", {.length = 1, .time = -2}},
     {Dimension::Rate, "rate (angle per time)", {.time = -1}},
+    {Dimension::Inertia,
+     "moment of inertia",
+     {.length = 1, .force = 1, .time = 2}},
     {Dimension::Foundation, "stiffness per area", {.length = -3, .force = 1}},
 }};
 const DimensionRow& row_of(Dimension dimension) {
@@ -345,6 +348,8 @@ std::string UnitSystem::unit_of(Dimension dimension) const {
       return length + "/s2";
     case Dimension::Rate:
       return "rad/s";
+    case Dimension::Inertia:
+      return mass + " " + length + "2";
     case Dimension::Foundation:
       return force + "/" + length + "3";
   }
@@ -354,11 +359,15 @@ std::string UnitSystem::unit_of(Dimension dimension) const {
 ShownUnit UnitSystem::shown(Dimension dimension) const {
   constexpr double kKilograms = 1e3;  // in a tonne
   constexpr double kPounds = 386.0885826771654;
-  if (dimension == Dimension::Mass && mass == "t") {
-    return {kKilograms, "kg"};
-  }
-  if (dimension == Dimension::Mass && mass == "lbf s2/in") {
-    return {kPounds, "lb"};
+  const std::string times =
+      dimension == Dimension::Inertia ? " " + length + "2" : "";
+  if (dimension == Dimension::Mass || dimension == Dimension::Inertia) {
+    if (mass == "t") {
+      return {kKilograms, "kg" + times};
+    }
+    if (mass == "lbf s2/in") {
+      return {kPounds, "lb" + times};
+    }
   }
   return {1.0, unit_of(dimension)};
 }

@@ -121,13 +121,21 @@ equations::ElasticSolution ElasticModel::solve(
 equations::AdjointSolution ElasticModel::solve_adjoint(
     const equations::ElasticState& state, int load_case,
     const std::vector<VectorX>& right_hand_sides) const {
+  return solve_adjoints(state,
+                        std::vector<int>(right_hand_sides.size(), load_case),
+                        right_hand_sides);
+}
+
+equations::AdjointSolution ElasticModel::solve_adjoints(
+    const equations::ElasticState& state, const std::vector<int>& load_cases,
+    const std::vector<VectorX>& right_hand_sides) const {
   if (state.empty()) {
     throw InvalidInput(
         "adjoint of elasticity: the state is empty; keep that of a solve that "
         "did not fail");
   }
-  return meniscus::equations::solve_adjoint(*state.kept_, load_case,
-                                            right_hand_sides);
+  return meniscus::equations::solve_adjoints(*state.kept_, load_cases,
+                                             right_hand_sides);
 }
 
 equations::ElasticOperator ElasticModel::operator_at(

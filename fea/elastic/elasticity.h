@@ -67,10 +67,17 @@ class ElasticModel {
       const std::vector<element::Material>& materials,
       equations::ElasticState* keep) const;
 
-  /// Adjoints of load case `load_case` (index), several at once: K lambda = g
-  /// for each right-hand side g, 3 per node of the mesh, by the solver and to
-  /// the tolerance of solve(). Not to converge is a failure. Throws
-  /// InvalidInput for an empty state and sizes that do not fit.
+  /// Adjoints, several at once: K lambda = g for each right-hand side g, 3 per
+  /// node of the mesh, held as in the load case of the same place in
+  /// `load_cases` (indices), by the solver and to the tolerance of solve(). Of
+  /// load cases held alike up to four (kMostColumns) are solved in step. Not to
+  /// converge is a failure. Throws InvalidInput for an empty state and sizes
+  /// that do not fit.
+  equations::AdjointSolution solve_adjoints(
+      const equations::ElasticState& state, const std::vector<int>& load_cases,
+      const std::vector<VectorX>& right_hand_sides) const;
+
+  /// The same, all of one load case.
   equations::AdjointSolution solve_adjoint(
       const equations::ElasticState& state, int load_case,
       const std::vector<VectorX>& right_hand_sides) const;

@@ -31,6 +31,10 @@ struct Material {
   /// Strain per degree along the material's axes; three equal numbers for an
   /// isotropic material [1/temperature].
   Vec3 thermal_expansion = Vec3::Zero();
+  // What it endures of stress to and fro [pressure]:
+  std::optional<double> endurance_limit;   // amplitude of reversed tension
+  std::optional<double> tensile_strength;  // at break
+  std::optional<double> torsion_limit;     // amplitude of reversed torsion
 };
 
 /// Lame's constants: stress = lambda tr(strain) I + 2 mu strain [pressure].

@@ -51,10 +51,7 @@ TetRule<Nodes> make_volume_rule() {
 }
 
 template <int Nodes>
-TetRule<Nodes> make_moment_rule() {
-  if (Nodes == 4) {
-    return make_stiffness_rule<Nodes>();
-  }
+TetRule<Nodes> make_degree_five_rule() {
   TetRule<Nodes> rule;
   for (const TetRulePoint& point : fine_tet_rule()) {
     rule.points.push_back(
@@ -78,15 +75,22 @@ const TetRule<Nodes>& volume_rule() {
 }
 
 template <int Nodes>
-const TetRule<Nodes>& moment_rule() {
-  static const TetRule<Nodes> kRule = make_moment_rule<Nodes>();
+const TetRule<Nodes>& fine_rule() {
+  static const TetRule<Nodes> kRule = make_degree_five_rule<Nodes>();
   return kRule;
+}
+
+template <int Nodes>
+const TetRule<Nodes>& moment_rule() {
+  return Nodes == 4 ? stiffness_rule<Nodes>() : fine_rule<Nodes>();
 }
 
 template const TetRule<4>& stiffness_rule<4>();
 template const TetRule<10>& stiffness_rule<10>();
 template const TetRule<4>& volume_rule<4>();
 template const TetRule<10>& volume_rule<10>();
+template const TetRule<4>& fine_rule<4>();
+template const TetRule<10>& fine_rule<10>();
 template const TetRule<4>& moment_rule<4>();
 template const TetRule<10>& moment_rule<10>();
 

@@ -30,4 +30,8 @@ const TetRule<Nodes>& volume_rule();
 template <int Nodes>
 const TetRule<Nodes>& moment_rule();
 
+/// Of degree five for both orders.
+template <int Nodes>
+const TetRule<Nodes>& fine_rule();
+
 }  // namespace meniscus::element

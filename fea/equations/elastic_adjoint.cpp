@@ -15,26 +15,29 @@ namespace meniscus::equations {
 
 namespace {
 
-const KeptState::Group& group_of(const KeptState& state, int load_case) {
-  for (const KeptState::Group& group : state.groups) {
-    if (std::find(group.cases.begin(), group.cases.end(), load_case) !=
-        group.cases.end()) {
-      return group;
-    }
-  }
-  throw InvalidInput(fmt::format("adjoint of elasticity: load case {} of {}",
-                                 load_case, state.names.size()));
-}
-
-void check_right_hand_sides(const KeptState& state, const std::string& name,
+void check_right_hand_sides(const KeptState& state,
+                            const std::vector<int>& load_cases,
                             const std::vector<VectorX>& right) {
+  if (load_cases.size() != right.size()) {
+    throw InvalidInput(
+        fmt::format("adjoint of elasticity: {} load cases for {} right-hand "
+                    "sides",
+                    load_cases.size(), right.size()));
+  }
   const auto size = static_cast<Eigen::Index>(3 * state.x.size());
-  for (const VectorX& g : right) {
-    if (g.size() != size || !g.allFinite()) {
+  for (std::size_t k = 0; k < right.size(); ++k) {
+    const auto load_case = static_cast<std::size_t>(load_cases[k]);
+    if (load_case >= state.names.size()) {
+      throw InvalidInput(
+          fmt::format("adjoint of elasticity: load case {} of "
+                      "{}",
+                      load_cases[k], state.names.size()));
+    }
+    if (right[k].size() != size || !right[k].allFinite()) {
       throw InvalidInput(fmt::format(
           "adjoint of load case '{}': a right-hand side of {} numbers must be "
           "finite and 3 for each of {} nodes",
-          name, g.size(), state.x.size()));
+          state.names[load_case], right[k].size(), state.x.size()));
     }
   }
 }
@@ -72,14 +75,15 @@ std::vector<solver::CgColumn> solve_columns(
 void finish_solution(const KeptState& state, const KeptState::Group& group,
                      const std::string& name, const VectorX& diagonal,
                      const VectorX& g, const VectorX& lambda,
-                     const solver::CgColumn& column, AdjointSolution& result) {
+                     const solver::CgColumn& column, std::size_t at,
+                     AdjointSolution& result) {
   const Equilibrium equilibrium = check_equilibrium(
       {state.x, g,
        solver::internal_forces(*state.table, state.x, state.laws, lambda),
        supports::spring_forces(group.restraints.springs, lambda), lambda,
        group.restraints.freedom, diagonal});
-  result.lambda.push_back(to_mesh(*state.order, lambda));
-  result.reactions.push_back(to_mesh(*state.order, equilibrium.reactions));
+  result.lambda[at] = to_mesh(*state.order, lambda);
+  result.reactions[at] = to_mesh(*state.order, equilibrium.reactions);
   result.iterations = std::max(result.iterations, column.iterations);
   result.residual = std::max(result.residual, equilibrium.residual);
   if (result.failure || g.isZero(0.0)) {
@@ -95,6 +99,40 @@ void finish_solution(const KeptState& state, const KeptState::Group& group,
   }
   result.failure =
       check_residual(equilibrium, state.tolerance, name + " (adjoint)");
+}
+
+/// The right-hand sides `open` of one group, in step.
+void solve_group(const KeptState& state, const KeptState::Group& group,
+                 const std::vector<std::size_t>& open,
+                 const std::vector<int>& load_cases,
+                 const std::vector<VectorX>& right_hand_sides,
+                 AdjointSolution& result) {
+  const supports::SpringBlocks& springs = group.restraints.springs;
+  const bool plain = springs.at.empty();
+  const solver::BlockMatrix<double> sprung =
+      plain ? solver::BlockMatrix<double>{}
+            : supports::sprung_matrix(state.table->pattern, state.matrix,
+                                      springs);
+  const solver::BlockMatrix<double>& matrix = plain ? state.matrix : sprung;
+  const VectorX diagonal = solver::diagonal_of(matrix);
+  for (std::size_t first = 0; first < open.size();
+       first += solver::kMostColumns) {
+    std::vector<VectorX> right;
+    right.reserve(solver::kMostColumns);
+    for (std::size_t k = first;
+         k < std::min(first + solver::kMostColumns, open.size()); ++k) {
+      right.push_back(to_solver(*state.order, right_hand_sides[open[k]]));
+    }
+    std::vector<VectorX> lambda;
+    const std::vector<solver::CgColumn> columns =
+        solve_columns(state, group, matrix, right, lambda);
+    for (std::size_t k = 0; k < right.size(); ++k) {
+      const std::size_t at = open[first + k];
+      finish_solution(state, group,
+                      state.names[static_cast<std::size_t>(load_cases[at])],
+                      diagonal, right[k], lambda[k], columns[k], at, result);
+    }
+  }
 }
 
 }  // namespace
@@ -135,35 +173,24 @@ KeptState ElasticSystem::keep(const TetMesh& mesh,
   return state;
 }
 
-AdjointSolution solve_adjoint(const KeptState& state, int load_case,
-                              const std::vector<VectorX>& right_hand_sides) {
+AdjointSolution solve_adjoints(const KeptState& state,
+                               const std::vector<int>& load_cases,
+                               const std::vector<VectorX>& right_hand_sides) {
   const Timer timer;
-  const KeptState::Group& group = group_of(state, load_case);
-  const std::string& name = state.names[static_cast<std::size_t>(load_case)];
-  check_right_hand_sides(state, name, right_hand_sides);
-  const supports::SpringBlocks& springs = group.restraints.springs;
-  const bool plain = springs.at.empty();
-  const solver::BlockMatrix<double> sprung =
-      plain ? solver::BlockMatrix<double>{}
-            : supports::sprung_matrix(state.table->pattern, state.matrix,
-                                      springs);
-  const solver::BlockMatrix<double>& matrix = plain ? state.matrix : sprung;
-  const VectorX diagonal = solver::diagonal_of(matrix);
+  check_right_hand_sides(state, load_cases, right_hand_sides);
   AdjointSolution result;
-  const std::size_t count = right_hand_sides.size();
-  for (std::size_t first = 0; first < count; first += solver::kMostColumns) {
-    std::vector<VectorX> right;
-    right.reserve(solver::kMostColumns);
-    for (std::size_t k = first;
-         k < std::min(first + solver::kMostColumns, count); ++k) {
-      right.push_back(to_solver(*state.order, right_hand_sides[k]));
+  result.lambda.resize(right_hand_sides.size());
+  result.reactions.resize(right_hand_sides.size());
+  for (const KeptState::Group& group : state.groups) {
+    std::vector<std::size_t> open;
+    for (std::size_t k = 0; k < load_cases.size(); ++k) {
+      if (std::find(group.cases.begin(), group.cases.end(), load_cases[k]) !=
+          group.cases.end()) {
+        open.push_back(k);
+      }
     }
-    std::vector<VectorX> lambda;
-    const std::vector<solver::CgColumn> columns =
-        solve_columns(state, group, matrix, right, lambda);
-    for (std::size_t k = 0; k < right.size(); ++k) {
-      finish_solution(state, group, name, diagonal, right[k], lambda[k],
-                      columns[k], result);
+    if (!open.empty()) {
+      solve_group(state, group, open, load_cases, right_hand_sides, result);
     }
   }
   result.seconds = timer.seconds();

@@ -36,8 +36,9 @@ struct KeptState {
   Points x;                            // of solver's nodes [length]
 };
 
-/// See ElasticModel::solve_adjoint().
-AdjointSolution solve_adjoint(const KeptState& state, int load_case,
-                              const std::vector<VectorX>& right_hand_sides);
+/// See ElasticModel::solve_adjoints().
+AdjointSolution solve_adjoints(const KeptState& state,
+                               const std::vector<int>& load_cases,
+                               const std::vector<VectorX>& right_hand_sides);
 
 }  // namespace meniscus::equations

@@ -7,9 +7,8 @@
 
 #include "core/error.h"
 #include "fea/element/elastic_law.h"
-#include "fea/element/element_sweep.h"
 #include "fea/element/point_stress.h"
-#include "fea/loads/body_load_gradient.h"
+#include "fea/functionals/point_chain.h"
 #include "fea/loads/body_loads.h"
 
 namespace meniscus::functionals {
@@ -139,49 +138,24 @@ template <class OfValue>
 void differentiate(const StressFunctionalInput& in, Measure measure,
                    const Sample& s, const OfValue& weight,
                    element::Functional& result) {
-  loads::require_temperature_slope(in.load_case);
   const std::vector<element::ElasticLaw> laws =
       element::elastic_laws(in.materials);
-  // One sweep gives nodes, displacements and temperatures their parts.
-  VectorX by_x = element::nodal_zeros(in.mesh);
-  result.by_displacement = element::nodal_zeros(in.mesh);
-  const bool warm = in.load_case.temperature.has_value();
-  if (warm) {
-    result.by_temperature.setZero(
-        static_cast<Eigen::Index>(in.mesh.nodes.size()));
-  }
-  const element::SweepTargets<1, 2> targets{
-      .fields = {&in.displacement},
-      .outputs = {&by_x, &result.by_displacement},
-      .scalar = warm ? &result.by_temperature : nullptr};
-  element::sweep_stiffness_points(
-      in.mesh, targets,
-      [&](const element::SweepPoint<1>& point, element::SweepFlux<2>& flux) {
-        if (s.counts[point.element] == 0) {
-          return;
+  chain_points(
+      in.mesh, in.materials, {in.load_case, in.displacement},
+      [&](int e, int q) -> PointSlope {
+        if (s.counts[e] == 0) {
+          return {};
         }
-        const std::size_t at = s.points.index(point.element, point.point);
-        const element::ElasticLaw& law =
-            laws[in.mesh.element_region[point.element]];
-        // A = dJ/dsigma per volume, B = V C A: a change of the displacement
-        // gradient H gives dJ = B : dH.
+        const std::size_t at = s.points.index(e, q);
         const Weight w = weight(s.value[at]);
-        const Mat3 A = w.by_value * by_stress(measure, s.points.stress[at],
-                                              s.value[at], law);
-        const Mat3 B = point.volume * law.stress(A);
-        // A move of the nodes with gradient D has dH = -H D and dV = V tr D.
-        flux.by_gradient[0].noalias() = -point.gradient[0].transpose() * B;
-        flux.by_gradient[0].diagonal().array() += point.volume * w.by_volume;
-        flux.by_gradient[1] = B;
-        // Temperature takes C alpha dT out of the stress.
-        flux.by_scalar =
-            -point.volume *
-            element::stress_tensor(law.heat_stress).cwiseProduct(A).sum();
-      });
-  // A temperature field moves with the nodes; the modulus scales all values.
-  result.by_nodes = element::as_points(by_x);
-  loads::add_temperature_slope(in.mesh, in.load_case, result.by_temperature,
-                               result.by_nodes);
+        return {.stress = s.points.volume[at] * w.by_value *
+                          by_stress(measure, s.points.stress[at], s.value[at],
+                                    laws[in.mesh.element_region[e]]),
+                .volume = w.by_volume,
+                .is_zero = false};
+      },
+      result);
+  // The modulus scales all values.
   result.by_modulus = by_modulus(in, s, weight);
 }
 

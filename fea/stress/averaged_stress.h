@@ -13,4 +13,10 @@ namespace meniscus::stress {
 RecoveredStress average_extrapolations(const TetMesh& mesh,
                                        const element::PointStress& points);
 
+/// Its transpose, as transpose_patches(): `by_value` per copy of `averaged`.
+void transpose_averages(const RecoveredStress& averaged,
+                        const element::PointStress& points,
+                        const std::vector<element::Stress>& by_value,
+                        element::PointCovector& by);
+
 }  // namespace meniscus::stress

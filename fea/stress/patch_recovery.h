@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/geometry/tet_mesh.h"
+#include "fea/element/point_covector.h"
 #include "fea/element/point_stress.h"
 #include "fea/element/region_nodes.h"
 #include "fea/stress/stress.h"
@@ -28,6 +29,16 @@ struct RecoveredStress {
 /// for any number of threads.
 RecoveredStress recover_by_patches(const TetMesh& mesh,
                                    const element::PointStress& points);
+
+/// The transpose of recover_by_patches() with its derivative by the nodes:
+/// `by_value` is what a number changes by each value of `nodes`, the copies
+/// that it gave; adds what it changes by the points and by the nodes. Costs
+/// what its patches cost whose values have a part in the number. The same bits
+/// for any number of threads.
+void transpose_patches(const TetMesh& mesh, const element::PointStress& points,
+                       const element::RegionNodes& nodes,
+                       const std::vector<element::Stress>& by_value,
+                       element::PointCovector& by);
 
 /// One value per node of the mesh: on interfaces that of the region with the
 /// largest von Mises stress.

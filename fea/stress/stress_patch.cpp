@@ -78,17 +78,17 @@ class Normal {
   int samples_ = 0;
 };
 
-/// Solves the leading `Terms` equations; false when they are nearly singular.
+using Coefficients = Eigen::Matrix<double, kTerms, 6>;
+
+/// Solves the leading `Terms` equations for `right`, the other rows 0; false
+/// when they are nearly singular.
 template <int Terms>
-bool solve(const Normal& normal, StressPatch& patch) {
+bool solve(const Normal& normal, const Coefficients& right,
+           Coefficients& solution) {
   Eigen::Matrix<double, Terms, Terms> A;
-  Eigen::Matrix<double, Terms, 6> B;
   for (int i = 0; i < Terms; ++i) {
     for (int j = i; j < Terms; ++j) {
       A(j, i) = normal.at(i, j);  // the factor reads the lower half
-    }
-    for (int k = 0; k < 6; ++k) {
-      B(i, k) = normal.at(i, kTerms + k);
     }
   }
   const Eigen::LLT<Eigen::Matrix<double, Terms, Terms>> factor(A);
@@ -100,10 +100,77 @@ bool solve(const Normal& normal, StressPatch& patch) {
         kFlat * pivots.maxCoeff() * pivots.maxCoeff())) {
     return false;
   }
-  patch.coefficient.setZero();
-  patch.coefficient.template topRows<Terms>() = factor.solve(B);
+  const Eigen::Matrix<double, Terms, 6> B = right.template topRows<Terms>();
+  solution.setZero();
+  solution.template topRows<Terms>() = factor.solve(B);
   return true;
 }
+
+/// By the highest degree that the points determine well: quadratic, linear,
+/// then the mean. The leading block of the sums is the system of a lower
+/// degree.
+void solve_best(const Normal& normal, int degree, bool single,
+                const Coefficients& right, Coefficients& solution) {
+  constexpr int kLinear = 4;
+  const bool alone = single && normal.samples() == kLinear;
+  if (degree == 2 && normal.samples() >= 2 * kTerms &&
+      solve<kTerms>(normal, right, solution)) {
+    return;
+  }
+  if ((normal.samples() >= 2 * kLinear || alone) &&
+      solve<kLinear>(normal, right, solution)) {
+    return;
+  }
+  solve<1>(normal, right, solution);
+}
+
+/// The root of a sample's weight, y from the centre; nothing out of reach.
+std::optional<double> root_of_weight(const Vec3& y,
+                                     const PatchOptions& options) {
+  if (!options.reach || !(*options.reach > 0.0)) {
+    return 1.0;
+  }
+  const double d = y.squaredNorm() / (*options.reach * *options.reach);
+  if (d >= 1.0) {
+    return std::nullopt;
+  }
+  return (1.0 - d) * (1.0 - d);
+}
+
+/// Normal equations P^T W P a = P^T W s over the integration points, as in
+/// patch recovery (Zienkiewicz, Zhu 1992); sqrt(W) scales the rows.
+Normal normal_of(const element::PointStress& points,
+                 std::span<const int> elements, const StressPatch& patch,
+                 const PatchOptions& options) {
+  Normal normal;
+  const double scale = 1.0 / patch.size;
+  for (const int e : elements) {
+    for (int q = 0; q < points.points_per_element; ++q) {
+      const std::size_t at = points.index(e, q);
+      const Vec3 y = points.position[at] - patch.centre;
+      const std::optional<double> root = root_of_weight(y, options);
+      if (!root) {
+        continue;
+      }
+      Row row = sample(y * scale, points.stress[at]);
+      for (double& term : row) {
+        term *= *root;
+      }
+      normal.add(row);
+    }
+  }
+  normal.finish();
+  return normal;
+}
+
+/// The derivative of v . (the terms at y) by y.
+Vec3 slope_of_terms(const Vec3& y, const Eigen::Matrix<double, kTerms, 1>& v) {
+  return {v[1] + 2.0 * y.x() * v[4] + y.y() * v[7] + y.z() * v[9],
+          v[2] + 2.0 * y.y() * v[5] + y.x() * v[7] + y.z() * v[8],
+          v[3] + 2.0 * y.z() * v[6] + y.y() * v[8] + y.x() * v[9]};
+}
+
+using StressMap = Eigen::Map<const Eigen::Matrix<double, 6, 1>>;
 
 }  // namespace
 
@@ -133,44 +200,75 @@ StressPatch fit_patch(const element::PointStress& points,
     }
   }
   patch.size = reach > 0.0 ? std::sqrt(reach) : 1.0;
-  // Normal equations P^T W P a = P^T W s over the integration points, as in
-  // patch recovery (Zienkiewicz, Zhu 1992); sqrt(W) scales the rows.
-  Normal normal;
+  const Normal normal = normal_of(points, elements, patch, options);
+  Coefficients right;
+  for (int i = 0; i < kTerms; ++i) {
+    for (int k = 0; k < 6; ++k) {
+      right(i, k) = normal.at(i, kTerms + k);
+    }
+  }
+  solve_best(normal, options.degree, elements.size() == 1, right,
+             patch.coefficient);
+  return patch;
+}
+
+PatchValueCovector transpose_value(const StressPatch& patch, const Vec3& x,
+                                   const element::Stress& by_value) {
+  const Vec3 y = (x - patch.centre) / patch.size;
+  const Row row = sample(y, element::Stress{});
+  const StressMap g(by_value.data());
+  PatchValueCovector result;
+  result.coefficient.noalias() =
+      Eigen::Map<const Eigen::Matrix<double, kTerms, 1>>(row.data()) *
+      g.transpose();
+  result.x = slope_of_terms(y, patch.coefficient * g) / patch.size;
+  return result;
+}
+
+FitCovector transpose_fit(const element::PointStress& points,
+                          std::span<const int> elements,
+                          const StressPatch& patch, const PatchOptions& options,
+                          const Coefficients& by_coefficient) {
+  // With N = P^T W P the number moves by B : (P^T W ds + d(P^T W) s - dN a), B
+  // = N^-1 times what it changes by a; r = s - P a is what the fit leaves.
+  const Normal normal = normal_of(points, elements, patch, options);
+  Coefficients B = Coefficients::Zero();
+  solve_best(normal, options.degree, elements.size() == 1, by_coefficient, B);
+  FitCovector result;
   const double scale = 1.0 / patch.size;
   for (const int e : elements) {
     for (int q = 0; q < points.points_per_element; ++q) {
-      const std::size_t at = points.index(e, q);
-      const Vec3 y = points.position[at] - centre;
-      double root = 1.0;  // of the weight
+      FitCovector::Sample by{.point = points.index(e, q)};
+      const Vec3 y = points.position[by.point] - patch.centre;
+      const std::optional<double> root = root_of_weight(y, options);
+      if (!root) {
+        continue;
+      }
+      const double weight = *root * *root;
+      const Row row = sample(y * scale, element::Stress{});
+      const Eigen::Map<const Eigen::Matrix<double, kTerms, 1>> P(row.data());
+      const Eigen::Matrix<double, 6, 1> b = B.transpose() * P;
+      const Eigen::Matrix<double, 6, 1> r =
+          StressMap(points.stress[by.point].data()) -
+          patch.coefficient.transpose() * P;
+      for (int k = 0; k < 6; ++k) {
+        by.stress[k] = weight * b[k];
+      }
+      by.position = weight * scale *
+                    slope_of_terms(y * scale, B * r - patch.coefficient * b);
       if (options.reach && *options.reach > 0.0) {
-        const double d = y.squaredNorm() / (*options.reach * *options.reach);
-        if (d >= 1.0) {
-          continue;
-        }
-        root = (1.0 - d) * (1.0 - d);
+        // weight = (1 - d)^4, d = |y / reach|^2.
+        const double reach = *options.reach;
+        const double d = y.squaredNorm() / (reach * reach);
+        const double by_d = -4.0 * std::pow(1.0 - d, 3) * b.dot(r);
+        by.position += by_d * 2.0 / (reach * reach) * y;
+        result.reach -= by_d * 2.0 * d / reach;
       }
-      Row row = sample(y * scale, points.stress[at]);
-      for (double& term : row) {
-        term *= root;
-      }
-      normal.add(row);
+      result.centre -= by.position;
+      result.samples.push_back(by);
     }
   }
-  normal.finish();
-  // The highest degree that the points determine well: quadratic, linear, then
-  // the mean. The leading block of the sums is the system of a lower degree.
-  constexpr int kLinear = 4;
-  const bool alone = elements.size() == 1 && normal.samples() == kLinear;
-  if (options.degree == 2 && normal.samples() >= 2 * kTerms &&
-      solve<kTerms>(normal, patch)) {
-    return patch;
-  }
-  if ((normal.samples() >= 2 * kLinear || alone) &&
-      solve<kLinear>(normal, patch)) {
-    return patch;
-  }
-  solve<1>(normal, patch);
-  return patch;
+  return result;
 }
 
 }  // namespace meniscus::stress

@@ -13,6 +13,7 @@
 #include "pipeline/case_data/case_responses.h"
 #include "pipeline/case_data/case_sides.h"
 #include "pipeline/case_data/case_values.h"
+#include "pipeline/case_data/response_entries.h"
 #include "pipeline/case_data/response_kinds.h"
 
 namespace meniscus::case_data {
@@ -352,7 +353,7 @@ std::vector<std::string> response_names(const Case& input) {
 Dimension dimension_of(ResponseKind kind) { return row_of(kind).dimension; }
 
 Measure measure_of(const ResponseEntry& response) {
-  if (response.kind == ResponseKind::Expression) {
+  if (is_composed(response)) {
     const Measure& measure = response.value.measure;
     return measure.is_known() ? measure : Measure{};
   }

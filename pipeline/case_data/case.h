@@ -69,6 +69,7 @@ std::vector<BodyEntry> solid_bodies(const Case& input);
 /// What a response depends on beside fields.
 struct ResponseInputs {
   Vec3 direction = Vec3::Zero();
+  Vec3 point = Vec3::Zero();    // on an axis [length]
   loads::NumberOfPlace weight;  // empty: 1
   loads::VectorOfPlace weight_slope;
   loads::NumberOfPlace level;  // above 0 where the part must not be [length]

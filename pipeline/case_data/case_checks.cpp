@@ -293,10 +293,12 @@ void check_plausible(const Case& input, const EvaluatedCase& inputs,
 }
 
 bool takes_scale_of_yield(const Case& input) {
-  return std::any_of(input.responses.begin(), input.responses.end(),
-                     [](const ResponseEntry& r) {
-                       return r.kind == ResponseKind::VonMisesKs && !r.scale;
-                     });
+  return std::any_of(
+      input.responses.begin(), input.responses.end(),
+      [](const ResponseEntry& r) {
+        return (r.kind == ResponseKind::VonMisesKs && !r.scale) ||
+               (r.kind == ResponseKind::StressRatio && !r.allowable);
+      });
 }
 
 /// What of a material has no derivatives.
@@ -319,7 +321,8 @@ void check_fixed_materials(const Case& input, const EvaluatedCase& initial,
       const Quantity& strength = *entry.yield_strength;
       problems.add_text(fmt::format(
           "{}: {} depends on a design variable, and a von_mises_ks without a "
-          "'scale' is measured by it; give that response a scale",
+          "'scale' or a stress_ratio without an 'allowable' is measured by it; "
+          "give that response one",
           place(input, strength.line), strength.key));
     }
   }

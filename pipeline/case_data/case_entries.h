@@ -187,6 +187,10 @@ struct MaterialEntry {
   std::string name;
   Quantity youngs_modulus, poisson_ratio, density;
   std::optional<Quantity> yield_strength;
+  // Of fatigue [pressure]:
+  std::optional<double> endurance_limit;
+  std::optional<double> tensile_strength;
+  std::optional<double> torsion_limit;
   std::optional<element::Orthotropic>
       orthotropic;  // instead of modulus and ratio
   Vec3 thermal_expansion = Vec3::Zero();
@@ -253,6 +257,7 @@ enum class ResponseKind {
   Mass,
   Volume,
   CentreOfMass,
+  Inertia,
   MaxVonMises,
   VonMisesNorm,
   VonMisesKs,
@@ -268,8 +273,17 @@ enum class ResponseKind {
   Distance,
   Gap,
   ScanDistance,
+  Overhang,
+  Draft,
+  StressRatio,
+  Fatigue,
+  Envelope,
   Expression
 };
+
+enum class StressMeasure { VonMises, Tension };
+
+enum class FatigueCriterion { Goodman, Crossland };
 
 enum class RegionSide { KeepOut, KeepIn };
 
@@ -278,8 +292,10 @@ struct ResponseEntry {
   std::string name;
   ResponseKind kind = ResponseKind::MeanDisplacement;
   std::string surface;
-  QuantityVector direction;  // an axis for Rotation
-  int load_case = 0;         // index
+  QuantityVector direction;             // an axis for Rotation
+  std::optional<QuantityVector> point;  // on the axis of Inertia
+  int load_case = 0;                    // index
+  std::vector<int> load_cases;          // of Fatigue the two: indices
   std::optional<PlaceQuantity> weight;
   double power = 8.0;
   double sharpness = 50.0;
@@ -293,7 +309,17 @@ struct ResponseEntry {
   std::string scan;                // of scan_distance: its path
   scan::ScanMeasure measure = scan::ScanMeasure::Rms;
   int body = 0;  // index
-  /// Of Expression: over the case's names, then the responses above it.
+  StressMeasure stress = StressMeasure::VonMises;
+  FatigueCriterion criterion = FatigueCriterion::Goodman;
+  std::optional<double> allowable;  // of StressRatio [pressure]
+  double excess = 0.02;  // of smooth bounds, as a part of what they bound
+  double angle = 0.0;    // of Overhang, Draft [rad]
+  double width = 0.0;    // of their switch about it [rad]
+  std::vector<std::string> base;  // of Overhang: surfaces on the build plate
+  std::vector<int> parts;         // of Envelope: indices of responses above
+  bool least = false;             // of Envelope: the smallest of them
+  /// Of Expression: over the case's names, then the responses above it; of
+  /// Envelope only its measure.
   Quantity value;
   SourceLine line = 0;
 };

@@ -98,6 +98,9 @@ element::Material material_of(const Case& input, const MaterialEntry& entry,
   }
   material.density = values.at(
       entry.density, [](double x) { return x >= 0.0; }, "0 or above");
+  material.endurance_limit = entry.endurance_limit;
+  material.tensile_strength = entry.tensile_strength;
+  material.torsion_limit = entry.torsion_limit;
   if (entry.yield_strength) {
     material.yield_strength = values.positive(*entry.yield_strength);
   }

@@ -36,6 +36,9 @@ ResponseInputs response_of(const Case& input, const ResponseEntry& response,
                            const CaseValues& values) {
   const std::size_t before = values.problems().size();
   ResponseInputs result{.direction = values.at(response.direction)};
+  if (response.point) {
+    result.point = values.at(*response.point);
+  }
   if (!values.are_rates() && has_direction(response.kind) &&
       values.problems().size() == before && !(result.direction.norm() > 0.0)) {
     const Quantity& first = response.direction[0];

@@ -1,17 +1,21 @@
 #include "pipeline/case_data/response_entries.h"
 
 #include <algorithm>
-#include <vector>
 
 #include "core/error.h"
 #include "pipeline/case_data/response_kinds.h"
 
 namespace meniscus::case_data {
 
-namespace {
+bool is_composed(const ResponseEntry& entry) {
+  return entry.kind == ResponseKind::Expression ||
+         entry.kind == ResponseKind::Envelope;
+}
 
-/// The responses that an expression's value is made of.
 std::vector<int> responses_in(const Case& input, const ResponseEntry& entry) {
+  if (entry.kind != ResponseKind::Expression) {
+    return entry.parts;
+  }
   const auto names =
       static_cast<int>(input.design.size() + input.parameters.size());
   std::vector<int> responses;
@@ -23,11 +27,9 @@ std::vector<int> responses_in(const Case& input, const ResponseEntry& entry) {
   return responses;
 }
 
-}  // namespace
-
 bool has_derivatives(const Case& input, int response) {
   const ResponseEntry& entry = input.responses[response];
-  if (entry.kind != ResponseKind::Expression) {
+  if (!is_composed(entry)) {
     return row_of(entry.kind).has_derivatives;
   }
   const std::vector<int> used = responses_in(input, entry);
@@ -37,7 +39,7 @@ bool has_derivatives(const Case& input, int response) {
 
 bool is_extreme(const Case& input, int response) {
   const ResponseEntry& entry = input.responses[response];
-  if (entry.kind != ResponseKind::Expression) {
+  if (!is_composed(entry)) {
     return row_of(entry.kind).is_extreme;
   }
   const std::vector<int> used = responses_in(input, entry);

@@ -2,10 +2,17 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "pipeline/case_data/case.h"
 
 namespace meniscus::case_data {
+
+/// Made of responses above it: an expression or an envelope.
+bool is_composed(const ResponseEntry& entry);
+
+/// Indices of the responses that a composed one is made of; of others none.
+std::vector<int> responses_in(const Case& input, const ResponseEntry& entry);
 
 /// False for peaks of nodal stress, and for what is made of them.
 bool has_derivatives(const Case& input, int response);

@@ -8,21 +8,29 @@
 #include "fea/loads/load_rates.h"
 #include "fea/loads/material_rates.h"
 #include "pipeline/case_data/case_values.h"
+#include "pipeline/case_data/composed_responses.h"
+#include "pipeline/case_data/response_entries.h"
 #include "pipeline/forward/frozen_part.h"
 
 namespace meniscus::forward {
 
 namespace {
 
-/// A response that is no expression, on its way back through the stages.
-struct Backward {
-  std::size_t response = 0;
-  ResponsePartials partials;
+/// The way back through one load case's equations.
+struct BackwardCase {
+  int load_case = 0;
   VectorX lambda;  // adjoint displacement; empty: does not depend on it
   VectorX adjoint_reactions;
   std::optional<loads::LoadGradient> loads;
-  std::vector<double> by_density;  // per region, of all stages
-  std::vector<double> by_modulus;  // likewise; both empty: 0
+};
+
+/// A response that is not made of others, on its way back through the stages.
+struct Backward {
+  std::size_t response = 0;
+  ResponsePartials partials;
+  std::vector<BackwardCase> cases;  // of the partials'
+  std::vector<double> by_density;   // per region, of all stages
+  std::vector<double> by_modulus;   // likewise; both empty: 0
   frozen::FilmGradient film;
   VectorX by_thickness;  // of walls; empty: 0
 };
@@ -36,15 +44,16 @@ class Adjoint {
  private:
   std::vector<char> needed(const std::vector<int>& wanted) const;
   bool solve_adjoints(DesignGradient& result);
-  bool solve_adjoints(std::size_t load_case, DesignGradient& result);
   bool materials_move() const;
   void through_materials(Backward& backward) const;
+  void through_equations(const CasePartials& partials, BackwardCase& backward,
+                         Points& by_nodes) const;
   void through_mesh(Backward& backward) const;
   void through_film();
   double rate(const Backward& backward,
               const case_data::CaseRates& rates) const;
-  void add_expressions(const std::vector<char>& needed, int variable,
-                       VectorX& rates) const;
+  void add_composed(const std::vector<char>& needed, int variable,
+                    VectorX& rates) const;
   const case_data::ResponseEntry& entry(const Backward& backward) const {
     return in_.part.input.responses[backward.response];
   }
@@ -56,50 +65,50 @@ class Adjoint {
 /// The responses wanted, and those that they are made of.
 std::vector<char> Adjoint::needed(const std::vector<int>& wanted) const {
   const case_data::Case& input = in_.part.input;
-  const auto names =
-      static_cast<int>(input.design.size() + input.parameters.size());
   std::vector<char> result(input.responses.size(), 0);
   for (const int response : wanted) {
     result[response] = 1;
   }
   for (std::size_t k = input.responses.size(); k-- > 0;) {
-    const case_data::ResponseEntry& response = input.responses[k];
-    if (result[k] == 0 ||
-        response.kind != case_data::ResponseKind::Expression) {
-      continue;
-    }
-    for (const int name : response.value.expression.names_used()) {
-      if (name >= names) {
-        result[name - names] = 1;
+    if (result[k] != 0) {
+      for (const int part :
+           case_data::responses_in(input, input.responses[k])) {
+        result[part] = 1;
       }
     }
   }
   return result;
 }
 
-bool Adjoint::solve_adjoints(std::size_t load_case, DesignGradient& result) {
+/// All that are open in one call, which solves load cases held alike in step.
+bool Adjoint::solve_adjoints(DesignGradient& result) {
   const equations::ElasticSolution& solution = in_.context.solution;
-  std::vector<Backward*> open;
+  std::vector<BackwardCase*> open;
+  std::vector<int> load_cases;
   std::vector<VectorX> right;
   for (Backward& backward : backwards_) {
-    if (entry(backward).load_case != static_cast<int>(load_case) ||
-        backward.partials.by_displacement.size() == 0) {
-      continue;
+    for (const CasePartials& partials : backward.partials.cases) {
+      backward.cases.push_back({.load_case = partials.load_case});
     }
-    if (backward.partials.self_adjoint != 0.0) {
-      const double factor = backward.partials.self_adjoint;
-      backward.lambda = factor * solution.displacements[load_case];
-      backward.adjoint_reactions = factor * solution.reactions[load_case];
-      continue;
+    for (std::size_t k = 0; k < backward.cases.size(); ++k) {
+      const CasePartials& partials = backward.partials.cases[k];
+      BackwardCase& back = backward.cases[k];
+      if (const double factor = partials.self_adjoint; factor != 0.0) {
+        const auto c = static_cast<std::size_t>(partials.load_case);
+        back.lambda = factor * solution.displacements[c];
+        back.adjoint_reactions = factor * solution.reactions[c];
+        continue;
+      }
+      open.push_back(&back);
+      load_cases.push_back(partials.load_case);
+      right.push_back(partials.by_displacement);
     }
-    open.push_back(&backward);
-    right.push_back(backward.partials.by_displacement);
   }
   if (open.empty()) {
     return true;
   }
-  equations::AdjointSolution adjoint = in_.part.elasticity->solve_adjoint(
-      in_.elastic_state, static_cast<int>(load_case), right);
+  equations::AdjointSolution adjoint =
+      in_.part.elasticity->solve_adjoints(in_.elastic_state, load_cases, right);
   result.solves += static_cast<int>(open.size());
   result.failure = adjoint.failure;
   for (std::size_t k = 0; k < open.size() && !result.failure; ++k) {
@@ -107,15 +116,6 @@ bool Adjoint::solve_adjoints(std::size_t load_case, DesignGradient& result) {
     open[k]->adjoint_reactions = std::move(adjoint.reactions[k]);
   }
   return !result.failure;
-}
-
-bool Adjoint::solve_adjoints(DesignGradient& result) {
-  for (std::size_t c = 0; c < in_.context.inputs.load_cases.size(); ++c) {
-    if (!solve_adjoints(c, result)) {
-      return false;
-    }
-  }
-  return true;
 }
 
 /// Some material depends on some design variable.
@@ -149,48 +149,54 @@ void Adjoint::through_materials(Backward& backward) const {
   const ResponsePartials& partials = backward.partials;
   add(partials.by_density, backward.by_density);
   add(partials.by_modulus, backward.by_modulus);
-  if (backward.lambda.size() == 0) {
-    return;
+  for (std::size_t k = 0; k < backward.cases.size(); ++k) {
+    const auto load_case =
+        static_cast<std::size_t>(backward.cases[k].load_case);
+    const VectorX& u = fields.solution.displacements[load_case];
+    const auto add_work = [&](const VectorX& moved, const VectorX& lambda) {
+      const loads::MaterialGradient by = loads::material_gradient(
+          fields.mesh, fields.inputs.materials,
+          fields.inputs.load_cases[load_case], moved, lambda);
+      add(by.density, backward.by_density);
+      add(by.youngs_modulus, backward.by_modulus);
+    };
+    add_work(u, backward.cases[k].lambda);
+    if (const VectorX& by_forces = partials.cases[k].by_forces;
+        by_forces.size() > 0) {
+      add_work(VectorX::Zero(u.size()), by_forces);
+    }
   }
-  const auto load_case = static_cast<std::size_t>(entry(backward).load_case);
-  const VectorX& u = fields.solution.displacements[load_case];
-  const auto add_work = [&](const VectorX& moved, const VectorX& lambda) {
-    const loads::MaterialGradient by = loads::material_gradient(
-        fields.mesh, fields.inputs.materials,
-        fields.inputs.load_cases[load_case], moved, lambda);
-    add(by.density, backward.by_density);
-    add(by.youngs_modulus, backward.by_modulus);
-  };
-  add_work(u, backward.lambda);
+}
+
+/// `by_nodes` receives what the equations change the response by.
+void Adjoint::through_equations(const CasePartials& partials,
+                                BackwardCase& backward,
+                                Points& by_nodes) const {
+  const ResponseContext& fields = in_.context;
+  const auto c = static_cast<std::size_t>(backward.load_case);
+  const loads::LoadCase& load_case = fields.inputs.load_cases[c];
+  const Points state = elastic::residual_gradient(
+      fields.mesh, fields.inputs.materials, load_case,
+      {fields.solution.displacements[c], fields.solution.reactions[c],
+       backward.lambda, backward.adjoint_reactions});
+  for (std::size_t i = 0; i < state.size(); ++i) {
+    by_nodes[i] += state[i];
+  }
+  VectorX by_forces = backward.lambda;
   if (partials.by_forces.size() > 0) {
-    add_work(VectorX::Zero(u.size()), partials.by_forces);
+    by_forces += partials.by_forces;
   }
+  backward.loads = loads::load_gradient(fields.mesh, fields.inputs.materials,
+                                        load_case, by_forces);
+  loads::add_temperature_gradient(fields.mesh, load_case,
+                                  partials.by_temperature, *backward.loads);
 }
 
 void Adjoint::through_mesh(Backward& backward) const {
   const ResponseContext& fields = in_.context;
   ResponsePartials& partials = backward.partials;
-  const auto load_case = static_cast<std::size_t>(entry(backward).load_case);
-  if (backward.lambda.size() > 0) {
-    const Points state = elastic::residual_gradient(
-        fields.mesh, fields.inputs.materials,
-        fields.inputs.load_cases[load_case],
-        {fields.solution.displacements[load_case],
-         fields.solution.reactions[load_case], backward.lambda,
-         backward.adjoint_reactions});
-    for (std::size_t i = 0; i < state.size(); ++i) {
-      partials.by_nodes[i] += state[i];
-    }
-    VectorX by_forces = backward.lambda;
-    if (partials.by_forces.size() > 0) {
-      by_forces += partials.by_forces;
-    }
-    backward.loads =
-        loads::load_gradient(fields.mesh, fields.inputs.materials,
-                             fields.inputs.load_cases[load_case], by_forces);
-    loads::add_temperature_gradient(fields.mesh,
-                                    fields.inputs.load_cases[load_case],
-                                    partials.by_temperature, *backward.loads);
+  for (std::size_t k = 0; k < backward.cases.size(); ++k) {
+    through_equations(partials.cases[k], backward.cases[k], partials.by_nodes);
   }
   if (!partials.by_nodes.empty()) {
     SurfaceGradient by =
@@ -222,9 +228,9 @@ double Adjoint::rate(const Backward& backward,
       backward.film, in_.context.inputs.film_system, rates.film_system);
   sum +=
       partials.by_direction.dot(rates.responses[backward.response].direction);
-  if (backward.loads) {
-    sum += loads::load_rate(*backward.loads,
-                            rates.load_cases[entry(backward).load_case]);
+  sum += partials.by_point.dot(rates.responses[backward.response].point);
+  for (const BackwardCase& back : backward.cases) {
+    sum += loads::load_rate(*back.loads, rates.load_cases[back.load_case]);
   }
   for (std::size_t k = 0; k < backward.by_density.size(); ++k) {
     sum += backward.by_density[k] * rates.materials[k].density;
@@ -241,24 +247,18 @@ double Adjoint::rate(const Backward& backward,
                           rates.responses[backward.response], in_.context);
 }
 
-/// `rates`: of the responses that are no expressions; receives the others.
-void Adjoint::add_expressions(const std::vector<char>& needed, int variable,
-                              VectorX& rates) const {
+/// `rates`: of the responses that are not made of others; receives those.
+void Adjoint::add_composed(const std::vector<char>& needed, int variable,
+                           VectorX& rates) const {
   const case_data::Case& input = in_.part.input;
-  const VectorX& design = in_.context.inputs.design;
-  std::vector<std::string> problems;
-  const case_data::CaseValues values(input, design, problems, variable);
   const VectorX& responses = in_.responses;
   for (std::size_t k = 0; k < input.responses.size(); ++k) {
     const case_data::ResponseEntry& response = input.responses[k];
-    if (needed[k] != 0 &&
-        response.kind == case_data::ResponseKind::Expression) {
-      rates[static_cast<Eigen::Index>(k)] =
-          values.rate(response.value, {responses.data(), k}, {rates.data(), k});
+    if (needed[k] != 0 && case_data::is_composed(response)) {
+      rates[static_cast<Eigen::Index>(k)] = case_data::composed_rate(
+          input, response, in_.context.inputs.design, variable,
+          {responses.data(), k}, {rates.data(), k});
     }
-  }
-  if (!problems.empty()) {
-    throw InvalidInput(problems.front());
   }
 }
 
@@ -268,12 +268,9 @@ DesignGradient Adjoint::run(const std::vector<int>& wanted) {
   const std::vector<char> needed = this->needed(wanted);
   DesignGradient result;
   // Partial derivatives of each response by what it sees directly.
-  bool expressions = false;
   for (std::size_t k = 0; k < needed.size(); ++k) {
     const case_data::ResponseEntry& response = input.responses[k];
-    const bool composed = response.kind == case_data::ResponseKind::Expression;
-    expressions = expressions || (needed[k] != 0 && composed);
-    if (needed[k] != 0 && !composed) {
+    if (needed[k] != 0 && !case_data::is_composed(response)) {
       backwards_.push_back(
           {.response = k,
            .partials = partials_of(response, in_.context.inputs.responses[k],
@@ -309,10 +306,8 @@ DesignGradient Adjoint::run(const std::vector<int>& wanted) {
       column[static_cast<Eigen::Index>(backward.response)] =
           rate(backward, rates);
     }
-    // Expressions of responses by the chain rule, in the order of the case.
-    if (expressions) {
-      add_expressions(needed, variable, column);
-    }
+    // What is made of responses by the chain rule, in the order of the case.
+    add_composed(needed, variable, column);
     for (std::size_t r = 0; r < wanted.size(); ++r) {
       result.jacobian(static_cast<Eigen::Index>(r), j) = column[wanted[r]];
     }

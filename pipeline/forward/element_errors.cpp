@@ -13,7 +13,8 @@
 #include "fea/stress/averaged_stress.h"
 #include "fea/stress/error_estimate.h"
 #include "fea/stress/peak_stress.h"
-#include "pipeline/case_data/case_values.h"
+#include "pipeline/case_data/composed_responses.h"
+#include "pipeline/case_data/response_entries.h"
 #include "pipeline/case_data/response_kinds.h"
 #include "pipeline/forward/response_partials.h"
 
@@ -121,7 +122,7 @@ class ResponseErrors {
   std::vector<std::vector<Dual>> duals();
   bool solve(const std::vector<std::vector<Dual>>& duals, std::size_t round,
              const elastic::ElasticModel& model);
-  void add_expressions();
+  void add_composed();
   double peak_error(std::size_t load_case) const;
   double smoothing_error(std::size_t r) const;
   double& error(std::size_t response) {
@@ -208,17 +209,19 @@ std::vector<std::vector<Dual>> ResponseErrors::duals() {
     if (estimate != case_data::ErrorSource::ByDual) {
       continue;
     }
-    const auto k = static_cast<std::size_t>(response.load_case);
     ResponsePartials partials =
         partials_of(response, fields_.inputs.responses[r],
                     {fields_.inputs, fields_.mesh, fields_.solution,
                      fields_.exclusion.what},
                     element::Derivatives::All);
-    if (partials.self_adjoint != 0.0) {  // the dual is the solution itself
-      const double norm = fields_.stresses[k].error.error;
-      error(r) = partials.self_adjoint * norm * norm;
-    } else if (partials.by_displacement.norm() > 0.0) {
-      result[k].push_back({r, std::move(partials.by_displacement)});
+    for (CasePartials& by : partials.cases) {
+      const auto k = static_cast<std::size_t>(by.load_case);
+      if (by.self_adjoint != 0.0) {  // the dual is the solution itself
+        const double norm = fields_.stresses[k].error.error;
+        error(r) += by.self_adjoint * norm * norm;
+      } else if (by.by_displacement.norm() > 0.0) {
+        result[k].push_back({r, std::move(by.by_displacement)});
+      }
     }
   }
   return result;
@@ -249,24 +252,25 @@ bool ResponseErrors::solve(const std::vector<std::vector<Dual>>& duals,
     if (scale[k] != 0.0) {
       const stress::ResponseError found =
           dual_weighted(fields_, k, solution.displacements[k]);
-      error(duals[k][round].response) = found.value / scale[k];
+      error(duals[k][round].response) += found.value / scale[k];
       shares_.add([&](std::size_t i) { return std::abs(found.element[i]); });
     }
   }
   return !errors_.failure;
 }
 
-/// What an expression would change by if all that it is made of did.
-void ResponseErrors::add_expressions() {
-  std::vector<std::string> problems;
-  const case_data::CaseValues values(input_, fields_.inputs.design, problems);
+/// What a composed response would change by if all that it is made of did.
+void ResponseErrors::add_composed() {
   const VectorX& here = values_;
   const VectorX there = here + errors_.responses;
   for (std::size_t r = 0; r < input_.responses.size(); ++r) {
     const case_data::ResponseEntry& response = input_.responses[r];
-    if (response.kind == case_data::ResponseKind::Expression) {
-      error(r) = values.at(response.value, {there.data(), r}) -
-                 values.at(response.value, {here.data(), r});
+    if (case_data::is_composed(response)) {
+      const VectorX& design = fields_.inputs.design;
+      error(r) =
+          case_data::composed_value(input_, response, design,
+                                    {there.data(), r}) -
+          case_data::composed_value(input_, response, design, {here.data(), r});
     }
   }
 }
@@ -277,7 +281,7 @@ void ResponseErrors::run(const elastic::ElasticModel& model) {
     ++round;
   }
   if (!errors_.failure) {
-    add_expressions();
+    add_composed();
   }
 }
 

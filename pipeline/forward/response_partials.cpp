@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 #include <fmt/format.h>
 
 #include "fea/functionals/displacement_functionals.h"
 #include "fea/functionals/energy_functionals.h"
+#include "fea/functionals/facing_area.h"
 #include "fea/functionals/groove.h"
+#include "fea/functionals/inertia.h"
 #include "fea/functionals/place_functionals.h"
 #include "fea/functionals/stress_functionals.h"
 #include "fea/functionals/volume_functionals.h"
@@ -18,20 +21,28 @@ namespace meniscus::forward {
 
 namespace {
 
-ResponsePartials to_partials(element::Functional functional) {
+/// `load_case`: the one that a displacement is of.
+ResponsePartials to_partials(element::Functional functional,
+                             int load_case = 0) {
   ResponsePartials result;
   result.value = functional.value;
   result.by_nodes = std::move(functional.by_nodes);
-  result.by_displacement = std::move(functional.by_displacement);
-  result.by_temperature = std::move(functional.by_temperature);
+  if (functional.by_displacement.size() > 0) {
+    result.cases.push_back(
+        {.load_case = load_case,
+         .by_displacement = std::move(functional.by_displacement),
+         .by_forces = {},
+         .by_temperature = std::move(functional.by_temperature)});
+  }
   result.by_modulus = std::move(functional.by_modulus);
   return result;
 }
 
-ResponsePartials to_partials(element::DirectedFunctional functional) {
+ResponsePartials to_partials(element::DirectedFunctional functional,
+                             int load_case = 0) {
   const Vec3 by_direction = functional.by_direction;
   ResponsePartials result =
-      to_partials(static_cast<element::Functional&&>(functional));
+      to_partials(static_cast<element::Functional&&>(functional), load_case);
   result.by_direction = by_direction;
   return result;
 }
@@ -62,26 +73,34 @@ const std::vector<element::Material>& materials(const ResponseTask& task) {
 
 ResponsePartials mean_displacement(const ResponseTask& task) {
   if (!task.response.weight) {
-    return to_partials(functionals::mean_displacement_functional(
-        task.fields.mesh, task.response.surface, task.inputs.direction,
-        displacement(task), task.derivatives));
+    return to_partials(
+        functionals::mean_displacement_functional(
+            task.fields.mesh, task.response.surface, task.inputs.direction,
+            displacement(task), task.derivatives),
+        task.response.load_case);
   }
-  return to_partials(functionals::weighted_displacement_functional(
-      task.fields.mesh, task.response.surface, task.inputs.direction,
-      {task.inputs.weight, task.inputs.weight_slope}, displacement(task),
-      task.derivatives));
+  return to_partials(
+      functionals::weighted_displacement_functional(
+          task.fields.mesh, task.response.surface, task.inputs.direction,
+          {task.inputs.weight, task.inputs.weight_slope}, displacement(task),
+          task.derivatives),
+      task.response.load_case);
 }
 
 ResponsePartials displacement_norm(const ResponseTask& task) {
-  return to_partials(functionals::displacement_norm_functional(
-      task.fields.mesh, task.response.surface, task.inputs.direction,
-      task.response.power, displacement(task), task.derivatives));
+  return to_partials(
+      functionals::displacement_norm_functional(
+          task.fields.mesh, task.response.surface, task.inputs.direction,
+          task.response.power, displacement(task), task.derivatives),
+      task.response.load_case);
 }
 
 ResponsePartials rotation(const ResponseTask& task) {
-  return to_partials(functionals::rotation_functional(
-      task.fields.mesh, task.response.surface, task.inputs.direction,
-      displacement(task), task.derivatives));
+  return to_partials(
+      functionals::rotation_functional(task.fields.mesh, task.response.surface,
+                                       task.inputs.direction,
+                                       displacement(task), task.derivatives),
+      task.response.load_case);
 }
 
 /// Half the work of the loads is the strain energy where it all goes into the
@@ -93,19 +112,23 @@ ResponsePartials energy(const ResponseTask& task) {
   const bool strain =
       task.response.kind == case_data::ResponseKind::StrainEnergy;
   if (strain && (!load_case.springs.empty() || load_case.temperature)) {
-    return to_partials(functionals::strain_energy_functional(
-        task.fields.mesh, materials(task), load_case, u, task.derivatives));
+    return to_partials(
+        functionals::strain_energy_functional(task.fields.mesh, materials(task),
+                                              load_case, u, task.derivatives),
+        task.response.load_case);
   }
   const double share = strain ? 0.5 : 1.0;
-  ResponsePartials result = to_partials(functionals::compliance_functional(
-      task.fields.mesh, materials(task), load_case, u, task.derivatives));
+  ResponsePartials result = to_partials(
+      functionals::compliance_functional(task.fields.mesh, materials(task),
+                                         load_case, u, task.derivatives),
+      task.response.load_case);
   result.value *= share;
   for (Vec3& by_node : result.by_nodes) {
     by_node *= share;
   }
   if (task.derivatives == element::Derivatives::All) {
-    result.self_adjoint = share;
-    result.by_forces = share * u;
+    result.cases.front().self_adjoint = share;
+    result.cases.front().by_forces = share * u;
   }
   return result;
 }
@@ -137,6 +160,23 @@ ResponsePartials centre_of_mass(const ResponseTask& task) {
       }
     }
   }
+  return result;
+}
+
+ResponsePartials inertia(const ResponseTask& task) {
+  std::optional<Vec3> through;
+  if (task.response.point) {
+    through = task.inputs.point;
+  }
+  functionals::InertiaFunctional inertia = functionals::inertia_functional(
+      task.fields.mesh, materials(task), task.inputs.direction, through,
+      task.derivatives);
+  const Vec3 by_axis = inertia.by_axis;
+  const Vec3 by_point = inertia.by_point;
+  ResponsePartials result =
+      to_partials(static_cast<functionals::MassFunctional&&>(inertia));
+  result.by_direction = by_axis;
+  result.by_point = by_point;
   return result;
 }
 
@@ -172,23 +212,42 @@ functionals::StressFunctionalInput stress_input(const ResponseTask& task) {
 
 ResponsePartials von_mises_norm(const ResponseTask& task) {
   return to_partials(functionals::von_mises_norm_functional(
-      stress_input(task), task.response.power));
+                         stress_input(task), task.response.power),
+                     task.response.load_case);
 }
 
 ResponsePartials von_mises_ks(const ResponseTask& task) {
   return to_partials(functionals::von_mises_ks_functional(
-      stress_input(task), {.sharpness = task.response.sharpness,
-                           .scale = ks_scale(task.response, materials(task))}));
+                         stress_input(task),
+                         {.sharpness = task.response.sharpness,
+                          .scale = ks_scale(task.response, materials(task))}),
+                     task.response.load_case);
 }
 
 ResponsePartials uniformity(const ResponseTask& task) {
   return to_partials(
-      functionals::von_mises_variation_functional(stress_input(task)));
+      functionals::von_mises_variation_functional(stress_input(task)),
+      task.response.load_case);
 }
 
 ResponsePartials energy_uniformity(const ResponseTask& task) {
   return to_partials(
-      functionals::energy_density_variation_functional(stress_input(task)));
+      functionals::energy_density_variation_functional(stress_input(task)),
+      task.response.load_case);
+}
+
+ResponsePartials overhang(const ResponseTask& task) {
+  return to_partials(functionals::overhang_functional(
+      task.fields.mesh, task.inputs.direction,
+      {task.response.angle, task.response.width}, task.response.base,
+      task.derivatives));
+}
+
+ResponsePartials draft(const ResponseTask& task) {
+  return to_partials(
+      functionals::draft_functional(task.fields.mesh, task.inputs.direction,
+                                    {task.response.angle, task.response.width},
+                                    task.response.surface, task.derivatives));
 }
 
 ResponsePartials film_area(const ResponseTask& task) {
@@ -289,6 +348,8 @@ ResponsePartials compute_partials(const ResponseTask& task) {
       return volume(task);
     case Kind::CentreOfMass:
       return centre_of_mass(task);
+    case Kind::Inertia:
+      return inertia(task);
     case Kind::MaxVonMises:
       return peak(task);
     case Kind::VonMisesNorm:
@@ -319,6 +380,15 @@ ResponsePartials compute_partials(const ResponseTask& task) {
       return gap(task);
     case Kind::ScanDistance:
       return scan_distance(task);
+    case Kind::Overhang:
+      return overhang(task);
+    case Kind::Draft:
+      return draft(task);
+    case Kind::StressRatio:
+      return stress_ratio(task);
+    case Kind::Fatigue:
+      return fatigue(task);
+    case Kind::Envelope:
     case Kind::Expression:
       break;  // of the responses above it
   }

@@ -17,6 +17,10 @@ struct ResponseTask {
 /// Of every kind but expressions of other responses.
 ResponsePartials compute_partials(const ResponseTask& task);
 
+// Of kinds stress_ratio and fatigue, in strength_partials.cpp:
+ResponsePartials stress_ratio(const ResponseTask& task);
+ResponsePartials fatigue(const ResponseTask& task);
+
 /// Of gaps, x the edge, where the case says nothing else: films run beside each
 /// other over wide areas, and many edges count.
 inline constexpr double kGapSmoothing = 0.01;

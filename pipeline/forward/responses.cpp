@@ -1,35 +1,17 @@
 #include "pipeline/forward/responses.h"
 
 #include <algorithm>
-#include <span>
 
 #include <fmt/format.h>
 
 #include "fea/functionals/displacement_functionals.h"
 #include "fea/functionals/place_functionals.h"
-#include "pipeline/case_data/case_values.h"
+#include "pipeline/case_data/composed_responses.h"
 #include "pipeline/case_data/response_entries.h"
 #include "pipeline/case_data/response_kinds.h"
 #include "pipeline/forward/response_partials.h"
 
 namespace meniscus::forward {
-
-namespace {
-
-/// Over the case's names and the values above.
-double expression_value(const case_data::Case& input,
-                        const case_data::ResponseEntry& response,
-                        const VectorX& design, std::span<const double> above) {
-  std::vector<std::string> problems;
-  const double value =
-      case_data::CaseValues(input, design, problems).at(response.value, above);
-  if (!problems.empty()) {
-    throw InvalidInput(problems.front());
-  }
-  return value;
-}
-
-}  // namespace
 
 functionals::ThicknessPairs thickness_pairs_of(const case_data::Case& input,
                                                const TetMesh& base) {
@@ -46,7 +28,7 @@ ResponsePartials partials_of(const case_data::ResponseEntry& response,
                              const case_data::ResponseInputs& inputs,
                              const ResponseContext& fields,
                              element::Derivatives derivatives) {
-  if (response.kind == case_data::ResponseKind::Expression) {
+  if (case_data::is_composed(response)) {
     throw InvalidInput(
         fmt::format("response '{}' has no partial derivatives", response.name));
   }
@@ -76,9 +58,9 @@ VectorX respond_films(const case_data::Case& input,
   for (std::size_t k = 0; k < input.responses.size(); ++k) {
     const case_data::ResponseEntry& response = input.responses[k];
     double& value = values[static_cast<Eigen::Index>(k)];
-    if (response.kind == case_data::ResponseKind::Expression) {
-      value = expression_value(input, response, fields.inputs.design,
-                               {values.data(), k});
+    if (case_data::is_composed(response)) {
+      value = case_data::composed_value(input, response, fields.inputs.design,
+                                        {values.data(), k});
     } else if (case_data::row_of(response.kind).of_films) {
       value = partials_of(response, fields.inputs.responses[k], fields,
                           element::Derivatives::None)
@@ -93,9 +75,9 @@ VectorX respond(const case_data::Case& input, const ResponseContext& fields) {
   for (std::size_t k = 0; k < input.responses.size(); ++k) {
     const case_data::ResponseEntry& response = input.responses[k];
     values[static_cast<Eigen::Index>(k)] =
-        response.kind == case_data::ResponseKind::Expression
-            ? expression_value(input, response, fields.inputs.design,
-                               {values.data(), k})
+        case_data::is_composed(response)
+            ? case_data::composed_value(input, response, fields.inputs.design,
+                                        {values.data(), k})
             : partials_of(response, fields.inputs.responses[k], fields,
                           element::Derivatives::None)
                   .value;

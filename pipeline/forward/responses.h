@@ -27,18 +27,26 @@ struct ResponseContext {
   const Scans* scans = nullptr;  // read_scans() of the case
 };
 
+/// What a response changes by one load case, all else held. What is empty is
+/// zero.
+struct CasePartials {
+  int load_case = 0;        // index
+  VectorX by_displacement;  // 3 per node [value/length]
+  /// Where by_displacement is K u times a number, that number: the adjoint is
+  /// then so many displacements.
+  double self_adjoint = 0.0;
+  VectorX by_forces;       // 3 per node [value/force]
+  VectorX by_temperature;  // per node [value/temperature]
+};
+
 /// One response's value and its partial derivatives, all else held. What is
 /// empty is zero.
 struct ResponsePartials {
   double value = 0.0;
-  Points by_nodes;          // of the mesh [value/length]
-  VectorX by_displacement;  // of its load case, 3 per node [value/length]
-  /// Where by_displacement is K u times a number, that number: the adjoint is
-  /// then so many displacements.
-  double self_adjoint = 0.0;
-  VectorX by_forces;       // of its load case, 3 per node [value/force]
-  VectorX by_temperature;  // of its load case, per node [value/temperature]
+  Points by_nodes;                  // of the mesh [value/length]
+  std::vector<CasePartials> cases;  // that it depends on the displacement of
   Vec3 by_direction = Vec3::Zero();
+  Vec3 by_point = Vec3::Zero();
   std::vector<double> by_density;  // per region
   std::vector<double> by_modulus;  // Young's, per region; displacement held
   frozen::FilmCovector film;

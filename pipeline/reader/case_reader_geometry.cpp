@@ -64,6 +64,18 @@ element::Orthotropic read_orthotropic(const CaseTable& table) {
   return result;
 }
 
+/// A constant above 0, or none.
+std::optional<double> strength(CaseContext& context, const CaseTable& table,
+                               const char* key) {
+  const std::optional<double> value = table.constant(key);
+  if (value && !(*value > 0.0)) {
+    context.problems.add(table.line(key),
+                         fmt::format("{}.{} is {:g}; it must be above 0",
+                                     table.path(), key, *value));
+  }
+  return value;
+}
+
 void read_materials(CaseContext& context, const toml::table& root,
                     case_data::Case& result) {
   for (const CaseTable& table : named_tables(context, root, "materials")) {
@@ -90,6 +102,9 @@ void read_materials(CaseContext& context, const toml::table& root,
     }
     material.density = table.quantity_or_zero("density");
     material.yield_strength = table.quantity("yield_strength");
+    material.endurance_limit = strength(context, table, "endurance_limit");
+    material.tensile_strength = strength(context, table, "tensile_strength");
+    material.torsion_limit = strength(context, table, "torsion_limit");
     result.materials.push_back(std::move(material));
   }
 }

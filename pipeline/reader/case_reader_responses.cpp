@@ -1,3 +1,5 @@
+#include "pipeline/reader/case_reader_responses.h"
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -10,22 +12,9 @@
 #include "pipeline/case_data/content_hash.h"
 #include "pipeline/case_data/response_kinds.h"
 #include "pipeline/case_data/scan_path.h"
-#include "pipeline/reader/case_reader_tables.h"
 
 namespace meniscus::reader {
 
-namespace {
-
-const std::vector<case_data::Named<scan::ScanMeasure>>& scan_measures() {
-  static const std::vector<case_data::Named<scan::ScanMeasure>> measures = {
-      {"rms", scan::ScanMeasure::Rms},
-      {"mean", scan::ScanMeasure::Mean},
-      {"p95", scan::ScanMeasure::P95},
-      {"largest", scan::ScanMeasure::Largest}};
-  return measures;
-}
-
-/// A constant above `above`; `standard` without the key or when it is wrong.
 double constant_above(CaseContext& context, const CaseTable& table,
                       const char* key, double above, double standard) {
   const double value = table.constant(key).value_or(standard);
@@ -37,6 +26,8 @@ double constant_above(CaseContext& context, const CaseTable& table,
                                    table.path(), key, value, above));
   return standard;
 }
+
+namespace {
 
 /// The index of the name that `key` gives among `known`; 0, and a note, for a
 /// name that is not there.
@@ -227,6 +218,43 @@ void require_films(CaseContext& context, const CaseTable& table,
   }
 }
 
+/// How steep a surface may be.
+void read_facing(CaseContext& context, const CaseTable& table,
+                 const case_data::Case& result,
+                 case_data::ResponseEntry& response) {
+  constexpr double kDegree = 0.017453292519943295;
+  constexpr double kRight = 90.0 * kDegree;
+  const bool overhang = response.kind == case_data::ResponseKind::Overhang;
+  if (!overhang && response.kind != case_data::ResponseKind::Draft) {
+    return;
+  }
+  const double usual = (overhang ? 45.0 : 2.0) * kDegree;
+  const double part = overhang ? 0.1 : 0.5;
+  response.angle = table.constant("angle").value_or(usual);
+  response.width = table.constant("width").value_or(part * response.angle);
+  if (!(response.angle > 0.0) || !(response.angle < kRight)) {
+    context.problems.add(
+        table.line("angle"),
+        fmt::format("{}.angle is {:g} degrees; expected one above 0 and below "
+                    "90",
+                    table.path(), response.angle / kDegree));
+  } else if (!(response.width > 0.0) || !(response.width < response.angle)) {
+    context.problems.add(
+        table.line("width"),
+        fmt::format("{}.width is {:g} degrees; expected a part of the angle, "
+                    "{:g} degrees",
+                    table.path(), response.width / kDegree,
+                    response.angle / kDegree));
+  }
+  const std::vector<std::string> known = case_data::surface_names(result);
+  response.base = table.names("base");
+  for (const std::string& surface : response.base) {
+    if (std::find(known.begin(), known.end(), surface) == known.end()) {
+      context.problems.unknown(table.line("base"), "surface", surface, known);
+    }
+  }
+}
+
 case_data::ResponseEntry read_response(CaseContext& context,
                                        const CaseTable& table,
                                        const case_data::ResponseRow& row,
@@ -245,6 +273,9 @@ case_data::ResponseEntry read_response(CaseContext& context,
       optional.end()) {
     response.load_case = index_of_load_case(context, table, result);
   }
+  if (table.has("through")) {
+    response.point = table.vector_or_zero("through");
+  }
   response.weight = table.place_quantity("weight");
   response.power = read_power(context, table, response);
   response.sharpness =
@@ -256,10 +287,11 @@ case_data::ResponseEntry read_response(CaseContext& context,
     index_among(context, table, "film", case_data::film_names(result));
   }
   read_response_films(context, table, result, response);
-  response.measure =
-      case_data::row_named(scan_measures(),
-                           table.choice("measure").value_or("rms"))
-          .value;
+  if (response.kind == case_data::ResponseKind::ScanDistance) {
+    response.measure = read_named(context, table, "measure", scan_measures());
+  }
+  read_facing(context, table, result, response);
+  read_strength(context, table, result, response);
   response.scan = table.text("scan").value_or("");
   response.body =
       index_among(context, table, "body", case_data::body_names(result));
@@ -270,63 +302,6 @@ case_data::ResponseEntry read_response(CaseContext& context,
 }
 
 }  // namespace
-
-TableSpec response_table() {
-  using D = Dimension;
-  using K = KeyType;
-  return {
-      "responses",
-      true,
-      TableNeed::ForParts,
-      "A number that the solver reports",
-      {{"kind", K::Choice, D::None, true,
-        case_data::meanings_of(case_data::response_kinds()),
-        case_data::choices_of(case_data::response_kinds())},
-       {"on", K::Name, D::None, false,
-        "of displacements and rotations: the surface"},
-       {"direction", K::Vector, std::nullopt, false,
-        "of displacements and centre_of_mass; any length but 0"},
-       {"axis", K::Vector, std::nullopt, false,
-        "of rotation, right-handed; any length but 0"},
-       {"load_case", K::Name, D::None, false,
-        "of what depends on loads; the first when left out"},
-       {"weight", K::Place, std::nullopt, false,
-        "of mean_displacement: what each place counts, an expression of x, y, "
-        "z; the mean is still by area, so that a weight may change its sign"},
-       {"power", K::Constant, D::None, false,
-        "of norms, above 1, of displacements 2 or above, 8 when left out; of "
-        "radius, even, 16 when left out"},
-       {"sharpness", K::Constant, D::None, false,
-        "of von_mises_ks; above 0; 50 when left out"},
-       {"scale", K::Constant, D::Pressure, false,
-        "of von_mises_ks: the stress that its sharpness is measured by; the "
-        "least yield strength when left out"},
-       {"keep_out", K::Place, D::Length, false,
-        "of distance: an expression of x, y, z: how deep a place lies in the "
-        "region, below 0 outside; or"},
-       {"keep_in", K::Place, D::Length, false,
-        "of distance: the same of a region that the solid must stay within"},
-       {"smoothing", K::Constant, D::Length, false,
-        "of thickness, distance, gap: all places within about as much of the "
-        "worst one count, and the value is on the safe side of it by no more "
-        "than this times the logarithm of their number; a tenth of "
-        "resolution.fea when left out, of gap a hundredth, of thickness what "
-        "keeps the value within 5 % of the least one"},
-       {"film", K::Name, D::None, false,
-        "of film_area: one film; all when left out"},
-       {"films", K::Names, D::None, false,
-        "of gap: the two; of scan_distance: all when left out"},
-       {"scan", K::Text, D::None, false,
-        "of scan_distance: an STL or OBJ file in the units and axes of the "
-        "case, its path relative to the case file"},
-       {"measure", K::Choice, D::None, false,
-        "of scan_distance: root of the mean square, mean, what 95 % of the "
-        "vertices do not exceed, largest; rms when left out",
-        case_data::choices_of(scan_measures())},
-       {"body", K::Name, D::None, false, "of pressure"},
-       {"value", K::Quantity, std::nullopt, false,
-        "of expression: over the case's names and the responses above"}}};
-}
 
 /// The load case that `key` names; the first when left out or wrong.
 int index_of_load_case(CaseContext& context, const CaseTable& table,
@@ -352,11 +327,12 @@ void read_responses(CaseContext& context, const toml::table& root,
     if (const auto kind = table.choice("kind")) {
       const case_data::ResponseRow& row =
           case_data::row_named(case_data::response_kinds(), *kind);
-      result.responses.push_back(read_response(context, table, row, result));
-      if (const std::string& scan = result.responses.back().scan;
-          !scan.empty()) {
-        keep_scan(context, table, scan, result);
+      case_data::ResponseEntry response =
+          read_response(context, table, row, result);
+      if (!response.scan.empty()) {
+        keep_scan(context, table, response.scan, result);
       }
+      add_response(context, table, std::move(response), result);
     }
   }
 }

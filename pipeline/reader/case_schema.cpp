@@ -89,6 +89,13 @@ std::vector<TableSpec> make_tables() {
         {"density", K::Quantity, D::Density, true, "mass per volume"},
         {"yield_strength", K::Quantity, D::Pressure, false,
          "stress above it is warned of"},
+        {"endurance_limit", K::Constant, D::Pressure, false,
+         "of fatigue: the amplitude of reversed tension that it endures"},
+        {"tensile_strength", K::Constant, D::Pressure, false,
+         "of fatigue by Goodman"},
+        {"torsion_limit", K::Constant, D::Pressure, false,
+         "of fatigue by Crossland: the amplitude of reversed torsion that it "
+         "endures, at least endurance_limit / sqrt(3)"},
         {"youngs_moduli", K::ConstantVector, D::Pressure, false,
          "of orthotropic: along axes 1, 2, 3"},
         {"poisson_ratios", K::ConstantVector, D::None, false,

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "core/math/union_find.h"
+#include "core/geometry/mesh_seams.h"
 #include "fea/functionals/volume_functionals.h"
 #include "fea/loads/loads.h"
 #include "pipeline/files/place_json.h"
@@ -25,29 +25,6 @@ using Json = nlohmann::ordered_json;
 
 // A resultant below this part of the forces' sum is rounding.
 constexpr double kNoResultant = 1e-9;
-
-/// Elements that share a corner and a region, counted as one piece.
-int piece_count(const TetMesh& mesh) {
-  UnionFind joined(static_cast<std::size_t>(mesh.element_count()));
-  int pieces = mesh.element_count();
-  const int regions = 1 + *std::max_element(mesh.element_region.begin(),
-                                            mesh.element_region.end());
-  for (int region = 0; region < regions; ++region) {
-    std::vector<int> first(static_cast<std::size_t>(mesh.corner_count), -1);
-    for (int e = 0; e < mesh.element_count(); ++e) {
-      if (mesh.element_region[static_cast<std::size_t>(e)] != region) {
-        continue;
-      }
-      for (int corner = 0; corner < 4; ++corner) {
-        int& seen = first[static_cast<std::size_t>(
-            mesh.element(e)[static_cast<std::size_t>(corner)])];
-        seen = seen < 0 ? e : seen;
-        pieces -= joined.join(e, seen) ? 1 : 0;
-      }
-    }
-  }
-  return pieces;
-}
 
 /// Of the nodes that count.
 double largest_principal(const TetMesh& mesh, const stress::Excluded& excluded,
@@ -217,9 +194,13 @@ std::vector<std::string> load_case_names(
 }
 
 Json part_json(const PartFigures& part) {
-  Json json = {{"name", part.name},         {"parts", part.parts},
-               {"volume", part.volume},     {"mass", part.mass},
-               {"elements", part.elements}, {"load_cases", Json::object()}};
+  Json json = {{"name", part.name},
+               {"parts", part.parts},
+               {"weld_length", part.weld_length},
+               {"volume", part.volume},
+               {"mass", part.mass},
+               {"elements", part.elements},
+               {"load_cases", Json::object()}};
   if (!part.surface.empty()) {
     json["surface"] = part.surface;
   }
@@ -266,6 +247,7 @@ PartFigures part_figures(const std::string& name,
   PartFigures part{
       .name = name,
       .parts = piece_count(fields.mesh),
+      .weld_length = seam_length(fields.mesh),
       .volume = functionals::volume_functional(fields.mesh,
                                                element::Derivatives::None)
                     .value,
@@ -310,6 +292,9 @@ std::vector<std::vector<std::string>> comparison_table(
   Table table(parts);
   table.add("parts", "", [](const PartFigures& part) {
     return std::optional<double>(part.parts);
+  });
+  table.add("weld length", units.length, [](const PartFigures& part) {
+    return std::optional(part.weld_length);
   });
   table.add("mass", units.mass,
             [](const PartFigures& part) { return std::optional(part.mass); });

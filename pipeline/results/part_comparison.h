@@ -37,8 +37,9 @@ struct PartLoadFigures {
 /// Zones of analysis.exclude do not count for stresses, as in result.json.
 struct PartFigures {
   std::string name;
-  int parts = 0;        // pieces: elements of one body that share corners
-  double volume = 0.0;  // [length^3]
+  int parts = 0;             // pieces: elements of one body that share corners
+  double weld_length = 0.0;  // of the seams between them [length]
+  double volume = 0.0;       // [length^3]
   double mass = 0.0;
   int elements = 0;
   std::vector<PartLoadFigures> load_cases;

@@ -13,6 +13,7 @@
 #include "io/stl.h"
 #include "io/vtk_files.h"
 #include "pipeline/accuracy/mesh_errors.h"
+#include "pipeline/case_data/composed_responses.h"
 #include "pipeline/files/place_json.h"
 #include "pipeline/forward/figures_json.h"
 #include "pipeline/forward/norm_peaks.h"
@@ -163,7 +164,23 @@ Json refrozen_json(const case_data::Case& input,
   return json;
 }
 
-/// Means over the volume beside the peaks, where there are such responses.
+/// Which response each envelope has its value from.
+void add_envelopes(const case_data::Case& input, const VectorX& responses,
+                   Json& json) {
+  const std::vector<std::string> names = case_data::response_names(input);
+  for (const case_data::ResponseEntry& response : input.responses) {
+    if (response.kind == case_data::ResponseKind::Envelope &&
+        responses.size() > 0) {
+      const int worst = case_data::extreme_part(response, responses);
+      json["envelopes"][response.name] = {
+          {response.least ? "least" : "most",
+           names[static_cast<std::size_t>(worst)]},
+          {"value", responses[worst]}};
+    }
+  }
+}
+
+/// Responses of stress beside the peaks, where there are such responses.
 void add_norm_peaks(const case_data::Case& input, const VectorX& responses,
                     const std::vector<forward::StressFigures>& stress,
                     Json& json) {
@@ -172,6 +189,7 @@ void add_norm_peaks(const case_data::Case& input, const VectorX& responses,
     const std::string& name =
         input.responses[static_cast<std::size_t>(peak.response)].name;
     json["norm_peaks"][name] = {{"norm", peak.value},
+                                {"of", peak.is_ratio ? "bound" : "mean"},
                                 {"load_case", peak.load_case},
                                 {"peak", peak.peak},
                                 {"position", files::place_json(peak.position)}};
@@ -268,6 +286,7 @@ nlohmann::ordered_json result_json(const case_data::Case& input,
         result.stress[forward::worst_load_case(result.stress)].load_case;
   }
   if (best != nullptr) {
+    add_envelopes(input, best->responses, json);
     add_norm_peaks(input, best->responses, result.stress, json);
   }
   if (result.eigen) {

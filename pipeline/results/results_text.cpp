@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include "core/count_text.h"
+#include "pipeline/case_data/composed_responses.h"
 #include "pipeline/case_data/response_entries.h"
 #include "pipeline/case_data/study_kinds.h"
 #include "pipeline/forward/eigen_figures.h"
@@ -102,20 +103,6 @@ std::string constraint_text(const case_data::Case& input,
                      held);
 }
 
-/// "  sigma   a mean over the volume; the nodal peak of 'lift' is 308 MPa ...".
-std::string peak_text(const case_data::Case& input,
-                      const forward::NormPeak& peak) {
-  return fmt::format(
-      "  {:<20} is a mean over the volume, {}; the nodal peak of '{}' is "
-      "{}{}\n",
-      input.responses[static_cast<std::size_t>(peak.response)].name,
-      quantity_text(peak.value, input.units.pressure, 4), peak.load_case,
-      quantity_text(peak.peak, input.units.pressure, 4),
-      !std::isfinite(peak.bound) ? ""
-      : peak.peak > peak.bound   ? ", ABOVE the bound"
-                                 : ", within the bound");
-}
-
 /// "58 evaluations (45 of models before the last, 13 of the last; 2 failed)".
 std::string counts_text(const study::RunResult& result) {
   std::string text =
@@ -174,6 +161,12 @@ std::string result_text(const case_data::Case& input,
     if (moved && result.start->responses.size() > k) {
       text += "   (at the start " + unit.text(result.start->responses[k]) + ")";
     }
+    if (const case_data::ResponseEntry& response = input.responses[k];
+        response.kind == case_data::ResponseKind::Envelope) {
+      text +=
+          fmt::format("   ({} '{}')", response.least ? "least" : "most",
+                      names[case_data::extreme_part(response, best.responses)]);
+    }
     text += "\n";
   }
   const bool matches = input.study.kind == case_data::StudyKind::Match;
@@ -186,7 +179,7 @@ std::string result_text(const case_data::Case& input,
   }
   for (const forward::NormPeak& peak :
        forward::norm_peaks(input, best.responses, result.stress)) {
-    text += peak_text(input, peak);
+    text += forward::norm_text(input, peak);
   }
   text += forward::stress_text(result.stress, input.units);
   if (result.sweep) {

@@ -15,6 +15,7 @@
 #include "core/timer.h"
 #include "pipeline/accuracy/doubted_margins.h"
 #include "pipeline/accuracy/mesh_errors.h"
+#include "pipeline/case_data/composed_responses.h"
 #include "pipeline/forward/norm_peaks.h"
 #include "pipeline/forward/part_warnings.h"
 #include "pipeline/forward/singular_places.h"
@@ -124,6 +125,7 @@ class StudyRun {
   accuracy::MeshValues peak_values(const accuracy::MeshSequence& meshes,
                                    std::size_t load_case) const;
   void share_peak_errors();
+  void add_ratio_errors();
   void warn();
   void count();
 
@@ -501,6 +503,27 @@ void StudyRun::share_peak_errors() {
   }
   for (const std::size_t r : peaks) {
     result_.response_errors[static_cast<Eigen::Index>(r)] = shared(r);
+  }
+  add_ratio_errors();
+}
+
+/// A ratio of stress is off by as large a part as the peak that it bounds, an
+/// envelope by as much as what it has its value from.
+void StudyRun::add_ratio_errors() {
+  for (std::size_t r = 0; r < input_.responses.size(); ++r) {
+    const case_data::ResponseEntry& response = input_.responses[r];
+    double& error = result_.response_errors[static_cast<Eigen::Index>(r)];
+    if (response.kind == case_data::ResponseKind::StressRatio) {
+      const forward::StressFigures& figures =
+          result_.stress[static_cast<std::size_t>(response.load_case)];
+      error = std::fmax(error,
+                        result_.best->responses[static_cast<Eigen::Index>(r)] *
+                            figures.peak_error / figures.max_von_mises);
+    } else if (response.kind == case_data::ResponseKind::Envelope) {
+      const int part =
+          case_data::extreme_part(response, result_.best->responses);
+      error = std::fmax(error, result_.response_errors[part]);
+    }
   }
 }
 

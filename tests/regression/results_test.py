@@ -54,7 +54,7 @@ tolerance = 0.005
 """
 
 # What refreeze_test.py looks at.
-ELSEWHERE = {"norm_peaks", "refrozen"}
+ELSEWHERE = {"envelopes", "norm_peaks", "refrozen"}
 # Kinds of study with a part of result.json of their own.
 OTHER_STUDIES = {
     "sweep": 'kind = "sweep"\ncount = 2\n',

@@ -129,6 +129,40 @@ class WorstCase(ProgramTest):
         self.assertTrue(loose["norm_peaks"]["sigma"]["peak_within_bound"])
         self.assertFalse(any("keeps its bound" in w for w in loose["warnings"]))
 
+    def test_a_bound_of_stress_keeps_the_peak_itself(self):
+        text = CASE.replace("[analysis]", """[responses.stress]
+kind = "stress_ratio"
+allowable = "90 MPa"
+load_cases = ["pull", "sway", "turn"]
+
+[analysis]
+exclude = [{ near = "ground", distance = "12 mm" }]""") + """
+[study]
+kind = "minimize"
+objective = "mass"
+constraints = [{ response = "stress", max = 1 }]
+"""
+        _, result, done = self.run_case(text, "--no-pictures", "--no-report")
+        self.assertTrue(result["constraints"]["stress"]["satisfied"])
+        values = result["responses"]
+        self.assertEqual(result["envelopes"]["stress"]["most"], "stress[sway]")
+        self.assertEqual(result["envelopes"]["stress"]["value"],
+                         values["stress[sway]"])
+        for name in ("pull", "sway", "turn"):
+            readings = result["stress"][name]["readings"]
+            nodal = max(readings["recovered"], readings["averaged"]) / 90
+            ratio = values[f"stress[{name}]"]
+            self.assertGreaterEqual(ratio, nodal)
+            self.assertLessEqual(ratio, 1.02 * nodal)
+            self.assertGreaterEqual(values["stress"], ratio)
+            self.assertLessEqual(nodal, 1 + 1e-3)
+            beside = result["norm_peaks"][f"stress[{name}]"]
+            self.assertEqual((beside["of"], beside["bound"]), ("bound", 1))
+        self.assertLessEqual(values["stress"], 1 + 1e-3)
+        self.assertRegex(done.stdout, r"stress +[\d.]+.*most 'stress\[sway\]'")
+        self.assertRegex(done.stdout,
+                         r"stress\[sway\] +is a bound of the nodal peak")
+
     def test_masses_are_read_in_kilograms(self):
         _, result, done = self.run_case(CASE, "--no-pictures", "--no-report")
         shown = float(re.search(r"mass +([\d.]+) kg", done.stdout).group(1))

@@ -228,6 +228,7 @@ TetMesh straight_quadratic(const TetMesh& linear) {
   mesh.corner_count = linear.corner_count;
   mesh.element_region = linear.element_region;
   mesh.face_label = linear.face_label;
+  mesh.face_front = linear.face_front;
   mesh.face_element = linear.face_element;
   mesh.labels = linear.labels;
   std::map<Edge, int> ids;

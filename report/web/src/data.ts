@@ -170,6 +170,7 @@ export interface StressFigures {
 
 export interface NormPeak {
   norm: number | null;
+  of?: "mean" | "bound"; // a bound is a ratio to what is allowed
   load_case: string;
   peak: number | null;
   bound?: number | null;
@@ -248,6 +249,7 @@ export interface Result {
   worst_load_case?: string;
   /** Means over the volume beside the peaks they are bounded for. */
   norm_peaks?: Record<string, NormPeak>;
+  envelopes?: Record<string, { most?: string; least?: string; value: number | null }>;
   buckling?: Record<
     string,
     { factors?: (number | null)[]; none_below?: number | null }

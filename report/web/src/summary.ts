@@ -197,7 +197,11 @@ function constraintTable(data: PageData, result: Result): HTMLElement | null {
   }
   const matches = data.case?.study.kind === "match";
   const peaks = result.norm_peaks ?? {};
-  const beside = constraints.some(([name]) => peaks[name]);
+  const worstOf = Object.fromEntries(
+    Object.entries(result.envelopes ?? {}).map(([name, e]) => [name, e.most ?? e.least ?? ""]),
+  );
+  const peakOf = (name: string) => peaks[name] ?? peaks[worstOf[name] ?? ""];
+  const beside = constraints.some(([name]) => peakOf(name));
   const unit = result.units?.pressure ?? "";
   return table(
     matches ? "Targets: relative mismatch" : "Constraints",
@@ -209,11 +213,16 @@ function constraintTable(data: PageData, result: Result): HTMLElement | null {
       ...(beside ? [{ head: "nodal peak", numeric: true }] : []),
     ],
     constraints.map(([name, c]) => {
-      const peak = peaks[name];
-      const text = peak ? quantity(peak.peak, unit) : "";
+      const peak = peakOf(name);
+      const ratio = peak?.of === "bound";
+      const text = !peak ? "" : ratio ? number(peak.peak) : quantity(peak.peak, unit);
       const over = peak?.peak_within_bound === false;
       return [
-        peak ? `${words(name)} (a mean over the volume)` : words(name),
+        peak && !ratio
+          ? `${words(name)} (a mean over the volume)`
+          : worstOf[name]
+            ? `${words(name)} (${words(worstOf[name])})`
+            : words(name),
         matches ? number(c.value) : responsesOf(data).text(name, c.value),
         matches ? number(c.bound) : boundText(data, name, c.bound),
         c.satisfied ? "\u2713 yes" : h("strong", { class: "bad" }, "\u2717 no"),

@@ -205,6 +205,36 @@ TEST(Adjoint, SeveralRightHandSidesAreThoseSolvedAlone) {
   }
 }
 
+/// Three load cases held alike and one that is not, mixed: each by its own
+/// supports, in its own place.
+TEST(Adjoint, SeveralLoadCasesAreThoseSolvedAlone) {
+  Problem problem{gradient_parts::block(2), gradient_parts::materials(),
+                  gradient_parts::load_cases()};
+  problem.load_cases.resize(4);
+  problem.load_cases[2].supports = {parts::hold("y0")};
+  const elastic::ElasticModel model(problem.mesh, problem.materials,
+                                    problem.load_cases);
+  equations::ElasticState state;
+  model.solve(problem.mesh, problem.load_cases, &state);
+  const std::vector<int> cases = {3, 2, 0, 1, 2, 3};
+  std::vector<VectorX> right;
+  for (std::size_t k = 0; k < cases.size(); ++k) {
+    right.push_back(wave(problem.mesh, 0.7 * static_cast<double>(k)));
+  }
+  const equations::AdjointSolution together =
+      model.solve_adjoints(state, cases, right);
+  ASSERT_FALSE(together.failure) << together.failure->message;
+  for (std::size_t k = 0; k < cases.size(); ++k) {
+    const equations::AdjointSolution alone =
+        model.solve_adjoint(state, cases[k], {right[k]});
+    EXPECT_LE((together.lambda[k] - alone.lambda[0]).norm(),
+              1e-9 * alone.lambda[0].norm());
+    EXPECT_LE((together.reactions[k] - alone.reactions[0]).norm(),
+              1e-7 * alone.reactions[0].norm());
+  }
+  EXPECT_THROW(model.solve_adjoints(state, {0, 1}, right), InvalidInput);
+}
+
 /// Both by multigrid, on more nodes than one thread takes at once.
 TEST(Adjoint, TheSameBitsOnTwoThreads) {
   const TetMesh mesh =

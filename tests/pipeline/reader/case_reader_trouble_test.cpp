@@ -231,7 +231,8 @@ const Trouble kMistakes[] = {
      "density = 2.8e-9\nyield_strength = \"4 * foot\"\n"
      "[responses.ks]\nkind = \"von_mises_ks\"\n",
      "49: materials.aluminium.yield_strength depends on a design variable, and "
-     "a von_mises_ks without a 'scale' is measured by it"},
+     "a von_mises_ks without a 'scale' or a stress_ratio without an "
+     "'allowable' is measured by it"},
     {"Density", "density = 2.8e-9", "density = -1",
      "48: materials.aluminium.density is -1; it must be 0 or above"},
     {"Resolution", "fea = 6.0", "fea = 0",

@@ -1,0 +1,78 @@
+#include <utility>
+#include <vector>
+
+#include "fea/functionals/nodal_peak.h"
+#include "fea/functionals/stress_criteria.h"
+#include "pipeline/forward/response_partials.h"
+
+namespace meniscus::forward {
+
+namespace {
+
+/// Of the load cases, in the states' order.
+ResponsePartials peak_partials(functionals::NodalPeak peak,
+                               const std::vector<int>& load_cases) {
+  ResponsePartials result;
+  result.value = peak.value;
+  result.by_nodes = std::move(peak.by_nodes);
+  result.by_modulus = std::move(peak.by_modulus);
+  for (std::size_t s = 0; s < peak.states.size(); ++s) {
+    result.cases.push_back(
+        {.load_case = load_cases[s],
+         .by_displacement = std::move(peak.states[s].by_displacement),
+         .by_forces = {},
+         .by_temperature = std::move(peak.states[s].by_temperature)});
+  }
+  return result;
+}
+
+ResponsePartials nodal_peak(const ResponseTask& task,
+                            const std::vector<int>& load_cases,
+                            const functionals::NodeCriterion& criterion) {
+  const ResponseContext& fields = task.fields;
+  std::vector<functionals::StressState> states;
+  states.reserve(load_cases.size());
+  for (const int c : load_cases) {
+    states.push_back({fields.inputs.load_cases[static_cast<std::size_t>(c)],
+                      fields.solution.displacements[c]});
+  }
+  return peak_partials(
+      functionals::nodal_peak(
+          {fields.mesh, task.fields.inputs.materials, std::move(states),
+           fields.excluded, task.response.excess, task.derivatives},
+          criterion),
+      load_cases);
+}
+
+}  // namespace
+
+ResponsePartials stress_ratio(const ResponseTask& task) {
+  std::vector<double> allowable;
+  allowable.reserve(task.fields.inputs.materials.size());
+  for (const element::Material& material : task.fields.inputs.materials) {
+    allowable.push_back(task.response.allowable
+                            ? *task.response.allowable
+                            : material.yield_strength.value());
+  }
+  return nodal_peak(task, {task.response.load_case},
+                    task.response.stress == case_data::StressMeasure::VonMises
+                        ? functionals::von_mises_ratio(std::move(allowable))
+                        : functionals::tension_ratio(std::move(allowable)));
+}
+
+ResponsePartials fatigue(const ResponseTask& task) {
+  std::vector<functionals::Endurance> endurance;
+  endurance.reserve(task.fields.inputs.materials.size());
+  for (const element::Material& material : task.fields.inputs.materials) {
+    endurance.push_back({.limit = material.endurance_limit.value(),
+                         .tensile = material.tensile_strength.value_or(0.0),
+                         .torsion = material.torsion_limit.value_or(0.0)});
+  }
+  return nodal_peak(
+      task, task.response.load_cases,
+      task.response.criterion == case_data::FatigueCriterion::Goodman
+          ? functionals::goodman_ratio(std::move(endurance))
+          : functionals::crossland_ratio(std::move(endurance)));
+}
+
+}  // namespace meniscus::forward
