@@ -30,12 +30,11 @@ std::array<element::Stress, 4> corner_stresses(
   return corner;
 }
 
-/// The mean of what the elements around the copy of a node say, weighted by
-/// volume.
+/// The mean of what the elements around the copy of a node say.
 element::Stress mean_at(
     const element::RegionNodes& nodes, const element::PointStress& points,
     const std::vector<std::array<element::Stress, 4>>& corners,
-    const element::NodeElements& around, int copy) {
+    const element::NodeElements& around, MeanWeight by, int copy) {
   element::Stress sum{};
   double weight = 0.0;
   for (const int e : around.of(copy)) {
@@ -44,8 +43,9 @@ element::Stress mean_at(
         static_cast<int>(std::find(ids.begin(), ids.end(), copy) - ids.begin());
     const element::Stress& from = corners[e][a < 4 ? a : kTetEdges[a - 4][0]];
     const element::Stress& to = corners[e][a < 4 ? a : kTetEdges[a - 4][1]];
-    double volume = 0.0;
-    for (int q = 0; q < points.points_per_element; ++q) {
+    double volume = by == MeanWeight::Equal ? 1.0 : 0.0;
+    for (int q = 0; by == MeanWeight::Volume && q < points.points_per_element;
+         ++q) {
       volume += points.volume[points.index(e, q)];
     }
     weight += volume;
@@ -64,7 +64,8 @@ element::Stress mean_at(
 }  // namespace
 
 RecoveredStress average_extrapolations(const TetMesh& mesh,
-                                       const element::PointStress& points) {
+                                       const element::PointStress& points,
+                                       MeanWeight weight) {
   const int elements = mesh.element_count();
   const int width = mesh.nodes_per_element();
   RecoveredStress result{.nodes = element::region_nodes(mesh), .value = {}};
@@ -79,7 +80,7 @@ RecoveredStress average_extrapolations(const TetMesh& mesh,
   }
 #pragma omp parallel for schedule(static)
   for (int i = 0; i < copies; ++i) {
-    result.value[i] = mean_at(result.nodes, points, corners, around, i);
+    result.value[i] = mean_at(result.nodes, points, corners, around, weight, i);
   }
   return result;
 }
