@@ -13,6 +13,7 @@ namespace {
 
 // Names of faces for the eye; surfaces and node sets beyond these give none.
 constexpr std::size_t kMostLabels = 256;
+constexpr int kMostSets = 1000;
 
 /// Corners of the face that has not corner `off`, outward.
 constexpr std::array<std::array<int, 3>, 4> kOutward = {
@@ -89,7 +90,7 @@ class NodeSetLabels {
   void add() {
     const DeckSets& sets = frozen_.model.node_sets;
     for (const std::string& name : sets.names()) {
-      if (mesh_.labels.size() >= kMostLabels) {
+      if (mesh_.labels.size() >= kMostLabels || set_ > kMostSets) {
         return;
       }
       const std::vector<int> places =
@@ -103,10 +104,11 @@ class NodeSetLabels {
  private:
   void add_set(const std::string& name, const std::vector<int>& places) {
     const int label = static_cast<int>(mesh_.labels.size());
+    ++set_;
     for (const int place : places) {
       const int node = frozen_.node_of[static_cast<std::size_t>(place)];
       if (node >= 0) {
-        marked_[static_cast<std::size_t>(node)] = label;
+        marked_[static_cast<std::size_t>(node)] = set_;
       }
     }
     bool any = false;
@@ -114,7 +116,7 @@ class NodeSetLabels {
       int& own = mesh_.face_label[static_cast<std::size_t>(f)];
       const auto ids = mesh_.face(f);
       if (own < 0 && std::all_of(ids.begin(), ids.end(), [&](int node) {
-            return marked_[static_cast<std::size_t>(node)] == label;
+            return marked_[static_cast<std::size_t>(node)] == set_;
           })) {
         own = label;
         any = true;
@@ -128,7 +130,8 @@ class NodeSetLabels {
   const DeckCards& cards_;
   const FrozenModel& frozen_;
   TetMesh& mesh_;
-  std::vector<int> marked_;  // the last label whose set has the node
+  int set_ = -1;             // under way, counted
+  std::vector<int> marked_;  // the last set that has the node
 };
 
 /// The corner of the element that the face has not.

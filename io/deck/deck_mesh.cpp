@@ -237,6 +237,8 @@ FrozenModel freeze_deck_model(const DeckCards& cards, DeckModel model,
                               ReadDeck& deck) {
   FrozenModel frozen{std::move(model), {}, {}};
   deck.heading = frozen.model.heading;
+  deck.not_needed.insert(deck.not_needed.end(), frozen.model.not_needed.begin(),
+                         frozen.model.not_needed.end());
   MeshFreezer(cards, frozen, deck).freeze();
   add_deck_faces(cards, deck.element_places, deck.mesh);
   label_deck_faces(cards, frozen, deck.mesh);

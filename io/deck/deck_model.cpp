@@ -9,6 +9,18 @@
 
 namespace meniscus::deck {
 
+namespace {
+
+/// Elements that meshers leave of lines and surfaces; solids do not feel them
+/// unless they have a section of their own, which is refused.
+bool is_of_surface_mesh(const std::string& type) {
+  static const std::vector<std::string> kTypes = {
+      "CPS3", "CPS6", "T3D2", "T3D3", "S3", "S6", "STRI65"};
+  return std::find(kTypes.begin(), kTypes.end(), type) != kTypes.end();
+}
+
+}  // namespace
+
 void check_deck_parameters(const DeckCards& deck, const DeckCard& card,
                            const std::vector<std::string>& known) {
   for (const DeckParameter& parameter : card.parameters) {
@@ -123,6 +135,11 @@ void DeckModelReader::elements(const DeckCard& card) {
   const std::string* type = card.find("TYPE");
   if (type != nullptr && *type == "SPRING1") {
     return spring_elements(card);
+  }
+  if (type != nullptr && is_of_surface_mesh(*type)) {
+    model_.not_needed.push_back(fmt::format("{}, TYPE={} ({})", card.written,
+                                            *type, deck_.place(card.at)));
+    return;
   }
   const int count = type == nullptr    ? 0
                     : *type == "C3D4"  ? 4

@@ -85,6 +85,7 @@ struct DeckModel {
   std::map<std::string, std::vector<int>> spring_sets;  // places of springs
   std::vector<RawSpringSection> spring_sections;
   std::vector<RawEquation> equations;
+  std::vector<std::string> not_needed;  // elements of lines and surfaces
 };
 
 /// Adds what the card says where it is one of the model; false for any other.

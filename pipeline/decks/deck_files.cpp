@@ -265,15 +265,16 @@ void write_deck_result(const DeckResult& result,
       folder, {"part.vtu", "part_surface.vtp", "part.frd", "result.json"});
   const case_data::Case input = deck_case(result, units);
   write_deck_vtu(result, input, folder);
+  io::FrdOptions frd;
+  frd.notes.program = "Meniscus " + program_version;
+  frd.notes.title = result.title;
+  frd.notes.unit = input.units.length;
+  frd.notes.unit_system = input.units.name;
+  frd.node_numbers = result.node_numbers;
+  frd.element_numbers = result.element_numbers;
+  frd.materials = material_names(result);
   io::write_frd(folder / "part.frd", result.fields.mesh, frd_results(result),
-                {.notes = {.program = "Meniscus " + program_version,
-                           .title = result.title,
-                           .unit = input.units.length,
-                           .unit_system = input.units.name,
-                           .lines = {}},
-                 .node_numbers = result.node_numbers,
-                 .element_numbers = result.element_numbers,
-                 .materials = material_names(result)});
+                frd);
   write_file(folder / "result.json",
              json_text(deck_json(result, units, program_version), 2) + "\n");
 }

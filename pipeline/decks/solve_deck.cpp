@@ -151,11 +151,14 @@ class DeckSolver {
     }
   }
 
+  /// With CalculiX's mass, so that a deck means the same to both.
   void find_frequencies(std::size_t s) {
     DeckStepFigures& step = result_.steps[s];
     step.frequencies = modes::natural_modes(
         fields().mesh, part_.materials, part_.load_cases[s],
-        {.count = part_.deck.steps[s].modes, .monitor = monitor_});
+        {.count = part_.deck.steps[s].modes,
+         .mass = solver::MassRule::StiffnessPoints,
+         .monitor = monitor_});
     for (std::size_t k = 0; k < step.frequencies->shapes.size(); ++k) {
       fields().modes.push_back(
           {fmt::format("{}_{}", step.name, k + 1),
