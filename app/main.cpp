@@ -270,7 +270,8 @@ int run_program(int argc, char** argv) {
       ->add_option("PART", compare_arguments.parts,
                    "results folders; after the first also files: ASCII STL "
                    "with a solid for each named face, OBJ with a group, STEP, "
-                   "Surface Evolver datafiles (.fe)")
+                   "Surface Evolver datafiles (.fe), and decks of CalculiX or "
+                   "Abaqus (.inp) with materials and loads of their own")
       ->required()
       ->expected(2, 100);
   compare

@@ -44,9 +44,7 @@ std::string advice_for(const std::string& keyword) {
       {"ASSEMBLY", "write the deck without parts and assemblies"},
       {"INSTANCE", "write the deck without parts and assemblies"},
       {"TIE", "mesh the bodies with common nodes"},
-      {"CONTACTPAIR",
-       "contact is not known; mesh the bodies with common nodes, "
-       "or hold the surface"},
+      {"CONTACTPAIR", "mesh the bodies with common nodes, or hold the surface"},
       {"PLASTIC",
        "only linear elasticity is known; leave it out for the "
        "elastic answer"},

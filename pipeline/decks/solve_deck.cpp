@@ -10,6 +10,7 @@
 #include "core/timer.h"
 #include "fea/functionals/volume_functionals.h"
 #include "fea/loads/loads.h"
+#include "pipeline/decks/compared_deck.h"
 
 namespace meniscus::decks {
 
@@ -185,10 +186,7 @@ case_data::Case deck_case(const DeckResult& result,
   if (units) {
     input.units = *units;
   }
-  for (const loads::LoadCase& load_case : result.fields.inputs.load_cases) {
-    input.load_cases.emplace_back().name = load_case.name;
-  }
-  return input;
+  return case_for_fields(std::move(input), result.fields);
 }
 
 }  // namespace meniscus::decks

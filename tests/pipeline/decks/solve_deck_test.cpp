@@ -192,7 +192,7 @@ TEST(SolveDeck, RefusesByLineWhatCannotBeSolved) {
       "*STEP\n*STATIC\n*BOUNDARY, OP=NEW\n1,1,3\n*CLOAD\n7,1,1.\n*END STEP\n",
       "31:", "rotate about");
   expect_refusal("*STEP\n*STATIC\n*CLOAD\n99,1,1.\n*END STEP\n",
-                 "39:", "in no element");
+                 "35:", "in no element");
 }
 
 TEST(SolveDeck, MaterialsOutOfRangeAreToldByLine) {
