@@ -28,9 +28,8 @@ int solve(const SolveArguments& arguments, Monitor& monitor) {
     units = unit_system(arguments.units);
   }
   decks::DeckPart part = decks::read_deck_part(path);
-  const fs::path folder = arguments.common.out.empty()
-                              ? fs::path("results") / path.stem()
-                              : fs::path(arguments.common.out);
+  const fs::path folder =
+      folder_without_run(path.stem().string(), arguments.common.out, "_deck");
   make_folder(folder);
   decks::DeckResult result = decks::solve_deck(std::move(part), &monitor);
   if (result.title.empty()) {

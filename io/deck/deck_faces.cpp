@@ -154,6 +154,7 @@ std::vector<int> nodes_of_face(const TetMesh& mesh, int element, int off) {
   const auto ids = mesh.element(element);
   const std::array<int, 3>& local = kOutward[static_cast<std::size_t>(off)];
   std::vector<int> nodes;
+  nodes.reserve(6);
   for (const int c : local) {
     nodes.push_back(ids[static_cast<std::size_t>(c)]);
   }

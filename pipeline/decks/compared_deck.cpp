@@ -16,7 +16,7 @@ namespace {
 
 /// Names that are the run's but for case and blanks become the run's.
 void use_names(const std::vector<std::string>& of_run,
-               std::vector<std::string*> of_deck) {
+               const std::vector<std::string*>& of_deck) {
   for (std::string* name : of_deck) {
     const auto same =
         std::find_if(of_run.begin(), of_run.end(), [&](const auto& other) {
@@ -31,10 +31,12 @@ void use_names(const std::vector<std::string>& of_run,
 void name_load_cases(const std::vector<loads::LoadCase>& of_run,
                      std::vector<loads::LoadCase>& of_deck) {
   std::vector<std::string> names;
+  names.reserve(of_run.size());
   for (const loads::LoadCase& load_case : of_run) {
     names.push_back(load_case.name);
   }
   std::vector<std::string*> own;
+  own.reserve(of_deck.size());
   for (loads::LoadCase& load_case : of_deck) {
     own.push_back(&load_case.name);
   }
@@ -73,6 +75,7 @@ results::PartFigures compared_deck_figures(DeckPart part,
   }
   name_load_cases(run.fields.inputs.load_cases, fields.inputs.load_cases);
   std::vector<std::string*> labels;
+  labels.reserve(fields.mesh.labels.size());
   for (std::string& label : fields.mesh.labels) {
     labels.push_back(&label);
   }

@@ -67,6 +67,8 @@ class Decks(ProgramTest):
         self.expect(self.call("export", "run", "--format", "inp", "--out",
                               "own.inp"), 0)
         self.expect(self.call("compare", "run", "own.inp", "--out", "out"), 0)
+        self.expect(self.call("solve", "own.inp", "--out", "run"), 2,
+                    "holds a run")
         run, own = json.loads(
             (self.folder / "out/compare.json").read_text())["parts"]
         self.assertEqual(list(run["load_cases"]), list(own["load_cases"]))
