@@ -59,8 +59,9 @@ std::filesystem::path results_folder(const case_data::Case& input,
                      : std::filesystem::path(out);
 }
 
-std::filesystem::path film_folder(const std::string& name,
-                                  const std::string& out) {
+std::filesystem::path folder_without_run(const std::string& name,
+                                         const std::string& out,
+                                         const std::string& ending) {
   namespace fs = std::filesystem;
   const auto holds_run = [](const fs::path& folder) {
     return fs::exists(folder / "study.sqlite") ||
@@ -68,11 +69,11 @@ std::filesystem::path film_folder(const std::string& name,
   };
   const fs::path usual = fs::path("results") / name;
   if (out.empty()) {
-    return holds_run(usual) ? fs::path(usual.string() + "_film") : usual;
+    return holds_run(usual) ? fs::path(usual.string() + ending) : usual;
   }
   if (holds_run(out)) {
     throw IoError(fmt::format(
-        "{} holds a run: the film of another design would stand beside its "
+        "{} holds a run: what is of another design would stand beside its "
         "figures; name another folder by --out",
         out));
   }

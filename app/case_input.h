@@ -19,10 +19,11 @@ reader::CaseReading read_and_report_case(const std::string& path,
 std::filesystem::path results_folder(const case_data::Case& input,
                                      const std::string& out);
 
-/// Where a film alone goes: `out`, or results/<name>, with _film where that
-/// folder holds a run. Throws IoError where `out` does.
-std::filesystem::path film_folder(const std::string& name,
-                                  const std::string& out);
+/// Where what is no run goes: `out`, or results/<name>, with `ending` ("_film")
+/// where that folder holds a run. Throws IoError where `out` does.
+std::filesystem::path folder_without_run(const std::string& name,
+                                         const std::string& out,
+                                         const std::string& ending);
 
 /// What stands before and behind the first '=' of the `text` that `option` was
 /// given. Throws InvalidInput with both and what is `expected` where there is

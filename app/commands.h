@@ -68,6 +68,12 @@ struct CheckGradientArguments {
   std::vector<std::string> at;  // "name=value" of design variables
 };
 
+struct SolveArguments {
+  std::string path;        // a deck (*.inp)
+  std::string units;       // a system's name; empty: the deck's own
+  CommonArguments common;  // out, log, quiet
+};
+
 struct CurvesArguments {
   std::string scan;              // an STL or OBJ file
   double angle = 25.0;           // [degrees]
@@ -89,6 +95,8 @@ int evolve_command(const EvolveArguments& arguments);
 /// Proposes rims of a scan as curves of a case.
 int curves_command(const CurvesArguments& arguments);
 int compare_command(const CompareArguments& arguments);
+/// Solves the steps of a deck of CalculiX or Abaqus.
+int solve_command(const SolveArguments& arguments);
 int export_command(const ExportArguments& arguments);
 int report_command(const ReportArguments& arguments);
 int study_show_command(const std::string& folder, const std::string& csv);

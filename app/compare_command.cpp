@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <omp.h>
 #include <set>
 
@@ -18,6 +19,7 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/json.h"
+#include "pipeline/decks/compared_deck.h"
 #include "pipeline/files/text_table.h"
 #include "pipeline/forward/part_file.h"
 #include "pipeline/forward/stress_figures.h"
@@ -160,14 +162,19 @@ std::vector<results::PartFigures> load_parts(const CompareArguments& arguments,
   const fs::path folder = arguments.out;
   const std::vector<FaceArgument> faces = face_arguments(arguments);
   std::vector<results::PartFigures> parts;
-  if (forward::is_part_file(arguments.parts.front())) {
+  if (forward::is_part_file(arguments.parts.front()) ||
+      decks::is_deck(arguments.parts.front())) {
     throw InvalidInput(
         "the first part must be a run: a file takes material, supports and "
-        "loads from it");
+        "loads from it, a deck its units");
   }
-  for (const std::string& part : arguments.parts) {
-    if (!forward::is_part_file(part)) {
-      store::StudyStore::read(part);  // refused before the others are computed
+  std::map<std::string, decks::DeckPart> read;
+  for (const std::string& part :
+       arguments.parts) {        // refused before the others
+    if (decks::is_deck(part)) {  // are computed
+      read.insert_or_assign(part, decks::read_deck_part(part));
+    } else if (!forward::is_part_file(part)) {
+      store::StudyStore::read(part);
     }
   }
   make_folder(folder);
@@ -186,6 +193,15 @@ std::vector<results::PartFigures> load_parts(const CompareArguments& arguments,
           path, first, names_for(faces, arguments.parts[k]), &monitor,
           &fields));
       keep_surface(first.input, fields, worst, folder, parts);
+      continue;
+    }
+    if (decks::is_deck(path)) {
+      forward::EvaluationFields fields;
+      parts.push_back(decks::compared_deck_figures(read.at(arguments.parts[k]),
+                                                   arguments.parts[k], first,
+                                                   &monitor, &fields));
+      keep_surface(decks::case_for_fields(first.input, fields), fields, worst,
+                   folder, parts);
       continue;
     }
     const results::RunPart run = results::load_run_part(path, &monitor);

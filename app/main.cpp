@@ -242,6 +242,27 @@ int run_program(int argc, char** argv) {
     command = [&] { return meniscus::app::export_command(export_arguments); };
   });
 
+  meniscus::app::SolveArguments solve_arguments;
+  CLI::App* solve = app.add_subcommand(
+      "solve", "solve the steps of a deck of CalculiX or Abaqus (.inp)");
+  solve
+      ->add_option("FILE", solve_arguments.path,
+                   "deck of C3D4 or C3D10 elements; docs/decks.md lists the "
+                   "keywords")
+      ->required();
+  solve
+      ->add_option("--units", solve_arguments.units,
+                   "what the deck's numbers are in (default: nothing is said)")
+      ->check(CLI::IsMember({"mm-N-MPa", "m-N-Pa", "in-lbf-psi"}));
+  solve->add_option("--out", solve_arguments.common.out,
+                    "results folder (default: results/<deck name>)");
+  solve->add_option("--log", solve_arguments.common.log,
+                    "write a log of JSON lines");
+  solve->add_flag("--quiet", solve_arguments.common.quiet, "errors only");
+  solve->callback([&] {
+    command = [&] { return meniscus::app::solve_command(solve_arguments); };
+  });
+
   meniscus::app::CompareArguments compare_arguments;
   CLI::App* compare = app.add_subcommand(
       "compare", "parts side by side: mass, stiffness, stress, uniformity");
@@ -249,7 +270,8 @@ int run_program(int argc, char** argv) {
       ->add_option("PART", compare_arguments.parts,
                    "results folders; after the first also files: ASCII STL "
                    "with a solid for each named face, OBJ with a group, STEP, "
-                   "Surface Evolver datafiles (.fe)")
+                   "Surface Evolver datafiles (.fe), and decks of CalculiX or "
+                   "Abaqus (.inp) with materials and loads of their own")
       ->required()
       ->expected(2, 100);
   compare

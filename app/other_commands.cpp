@@ -111,7 +111,7 @@ int evolve_datafile_command(const EvolveArguments& arguments) {
   const int refused = exit_code_of({on<IoError>(kExitWrongInput)}, [&] {
     const results::DatafileOptions options =
         datafile_options(arguments, monitor);
-    folder = film_folder(path.stem().string(), common.out);
+    folder = folder_without_run(path.stem().string(), common.out, "_film");
     make_folder(folder);
     catch_stop_signals();
     result = results::evolve_datafile(path, options);
@@ -300,7 +300,7 @@ int evolve_command(const EvolveArguments& arguments) {
   const case_data::Case& input = *reading.input;
   fs::path folder;
   const int refused = exit_code_of({on<IoError>(kExitWrongInput)}, [&] {
-    folder = film_folder(input.name, common.out);
+    folder = folder_without_run(input.name, common.out, "_film");
     make_folder(folder);
     return kExitDone;
   });

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <Eigen/Geometry>
+
 namespace meniscus {
 
 int TetMesh::label_of(const std::string& name) const {

@@ -29,6 +29,20 @@ std::string cause(solver::CgEnd end, const solver::CgColumn& column, int most) {
   }
 }
 
+loads::LoadCase only_holds(const loads::LoadCase& load_case) {
+  loads::LoadCase held;
+  held.supports = load_case.supports;
+  held.held_nodes = load_case.held_nodes;
+  held.springs = load_case.springs;
+  held.node_springs = load_case.node_springs;
+  return held;
+}
+
+bool held_alike(const loads::LoadCase& a, const loads::LoadCase& b) {
+  return a.supports == b.supports && a.held_nodes == b.held_nodes &&
+         a.springs == b.springs && a.node_springs == b.node_springs;
+}
+
 }  // namespace
 
 ElasticBase::ElasticBase(const TetMesh& mesh,
@@ -54,8 +68,7 @@ ElasticBase::ElasticBase(const TetMesh& mesh,
     throw MeshError("elasticity: a node position of the mesh is not finite");
   }
   for (const loads::LoadCase& load_case : load_cases) {
-    supports.push_back(load_case.supports);
-    springs.push_back(load_case.springs);
+    held.push_back(only_holds(load_case));
     checked_forces(mesh, load_case, given);
   }
 }
@@ -69,14 +82,13 @@ void ElasticBase::check_same(
         "the base mesh ({} nodes)",
         mesh.nodes.size(), mesh.element_count(), order.to_mesh.size()));
   }
-  if (load_cases.size() != supports.size()) {
+  if (load_cases.size() != held.size()) {
     throw InvalidInput(
         fmt::format("elasticity: {} load cases, but the base design has {}",
-                    load_cases.size(), supports.size()));
+                    load_cases.size(), held.size()));
   }
   for (std::size_t c = 0; c < load_cases.size(); ++c) {
-    if (load_cases[c].supports != supports[c] ||
-        load_cases[c].springs != springs[c]) {
+    if (!held_alike(load_cases[c], held[c])) {
       throw InvalidInput(fmt::format(
           "load case '{}': its supports differ from the base design's; build "
           "a new model for them",

@@ -57,8 +57,7 @@ struct ElasticBase {
   RegionMaterials regions;
   std::vector<int> elements;  // the base's, to compare
   std::vector<int> faces;
-  std::vector<std::vector<loads::Support>> supports;
-  std::vector<std::vector<loads::SpringBed>> springs;
+  std::vector<loads::LoadCase> held;  // the base's, without what acts on them
   solver::NodeOrder order;
 };
 

@@ -121,6 +121,16 @@ VectorX temperature_change(const TetMesh& mesh, const LoadCase& load_case) {
   }
   const Temperature& t = *load_case.temperature;
   require_finite(t.reference, load_case, "the reference temperature");
+  if (t.nodal.size() != 0) {
+    if (t.nodal.size() != static_cast<Eigen::Index>(mesh.nodes.size()) ||
+        !t.nodal.allFinite()) {
+      throw InvalidInput(fmt::format(
+          "load case '{}': its {} nodal temperatures must be finite and one "
+          "for each of {} nodes",
+          load_case.name, t.nodal.size(), mesh.nodes.size()));
+    }
+    return t.nodal.array() - t.reference;
+  }
   if (!t.field) {
     require_finite(t.value, load_case, "the temperature");
     return VectorX::Constant(static_cast<Eigen::Index>(mesh.nodes.size()),

@@ -42,6 +42,15 @@ struct Support {
   bool operator==(const Support&) const = default;
 };
 
+/// A node, on a surface or inside, held along a direction, whatever surfaces
+/// do.
+struct HeldNode {
+  int node = 0;
+  Vec3 direction = Vec3::UnitX();  // any length but 0
+
+  bool operator==(const HeldNode&) const = default;
+};
+
 enum class SpringMeasure { PerArea, Total };
 
 /// A bed of springs between a surface and the ground, spread consistently:
@@ -56,6 +65,16 @@ struct SpringBed {
   std::optional<element::LocalAxes> axes;
 
   bool operator==(const SpringBed&) const = default;
+};
+
+/// A spring between nodes of one element and the ground: it pulls with
+/// stiffness x e on e = sum coefficients . u.
+struct NodeSpring {
+  double stiffness = 0.0;  // above 0 [force/length]
+  std::vector<int> nodes;
+  Points coefficients;  // one per node
+
+  bool operator==(const NodeSpring&) const = default;
 };
 
 /// A total force spread as uniform traction over a surface [force].
@@ -104,11 +123,13 @@ struct Temperature {
   NumberOfPlace field;  // instead of `value`, where it is set
   double reference = 0.0;
   VectorOfPlace slope;  // the field's gradient, for derivatives only
+  VectorX nodal;        // instead of both, one per node, where it has any
 };
 
 struct LoadCase {
   std::string name;
   std::vector<Support> supports;
+  std::vector<HeldNode> held_nodes;
   std::vector<SurfaceForce> forces;
   std::vector<SurfacePressure> pressures;
   std::vector<SurfaceTraction> tractions;
@@ -117,6 +138,7 @@ struct LoadCase {
   std::optional<Spin> spin;
   std::optional<Temperature> temperature;
   std::vector<SpringBed> springs;
+  std::vector<NodeSpring> node_springs;
   VectorX nodal;  // forces at nodes, 3 per node; empty: none [force]
 };
 

@@ -55,19 +55,19 @@ double volume_at_points(const element::PointStress& points, int e) {
   return volume;
 }
 
-/// The mean of what the elements around the copy of a node say, weighted by
-/// volume.
+/// The mean of what the elements around the copy of a node say.
 element::Stress mean_at(
     const element::RegionNodes& nodes, const element::PointStress& points,
     const std::vector<std::array<element::Stress, 4>>& corners,
-    const element::NodeElements& around, int copy) {
+    const element::NodeElements& around, MeanWeight by, int copy) {
   element::Stress sum{};
   double weight = 0.0;
   for (const int e : around.of(copy)) {
     const auto [a, b] = ends_of(nodes, e, copy);
     const element::Stress& from = corners[e][a];
     const element::Stress& to = corners[e][b];
-    const double volume = volume_at_points(points, e);
+    const double volume =
+        by == MeanWeight::Equal ? 1.0 : volume_at_points(points, e);
     weight += volume;
     for (int k = 0; k < 6; ++k) {
       sum[k] += volume * 0.5 * (from[k] + to[k]);
@@ -84,7 +84,8 @@ element::Stress mean_at(
 }  // namespace
 
 RecoveredStress average_extrapolations(const TetMesh& mesh,
-                                       const element::PointStress& points) {
+                                       const element::PointStress& points,
+                                       MeanWeight weight) {
   const int elements = mesh.element_count();
   const int width = mesh.nodes_per_element();
   RecoveredStress result{.nodes = element::region_nodes(mesh), .value = {}};
@@ -99,7 +100,7 @@ RecoveredStress average_extrapolations(const TetMesh& mesh,
   }
 #pragma omp parallel for schedule(static)
   for (int i = 0; i < copies; ++i) {
-    result.value[i] = mean_at(result.nodes, points, corners, around, i);
+    result.value[i] = mean_at(result.nodes, points, corners, around, weight, i);
   }
   return result;
 }

@@ -7,9 +7,11 @@
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "core/error.h"
 #include "fea/element/face_points.h"
+#include "fea/element/node_elements.h"
 #include "fea/element/surface_faces.h"
 #include "fea/element/surface_normals.h"
 #include "fea/loads/loads.h"
@@ -85,6 +87,98 @@ void add_bed_stiffness(const TetMesh& mesh, const loads::SpringBed& bed,
   }
 }
 
+/// The local numbers of the spring's nodes in an element that has them all.
+struct SpringElement {
+  int element = -1;
+  std::vector<int> local;
+};
+
+SpringElement find_element(const TetMesh& mesh,
+                           const element::NodeElements& around,
+                           const std::vector<int>& nodes) {
+  SpringElement found;
+  for (const int e : around.of(nodes.front())) {
+    const auto ids = mesh.element(e);
+    found.local.clear();
+    for (const int node : nodes) {
+      const auto at = std::find(ids.begin(), ids.end(), node);
+      if (at != ids.end()) {
+        found.local.push_back(static_cast<int>(at - ids.begin()));
+      }
+    }
+    if (found.local.size() == nodes.size()) {
+      found.element = e;
+      break;
+    }
+  }
+  return found;
+}
+
+/// Half of what mid-sides have goes to each of their ends.
+Points on_corners(const Points& of_local) {
+  Points corners(of_local.begin(), of_local.begin() + 4);
+  for (std::size_t m = 4; m < of_local.size(); ++m) {
+    for (const int end : kTetEdges[m - 4]) {
+      corners[static_cast<std::size_t>(end)] += 0.5 * of_local[m];
+    }
+  }
+  return corners;
+}
+
+void check(const TetMesh& mesh, const loads::NodeSpring& spring,
+           const loads::LoadCase& load_case) {
+  const auto is_node = [&](int node) {
+    return node >= 0 && node < static_cast<int>(mesh.nodes.size());
+  };
+  const bool fits =
+      !spring.nodes.empty() &&
+      spring.nodes.size() == spring.coefficients.size() &&
+      std::all_of(spring.nodes.begin(), spring.nodes.end(), is_node) &&
+      std::all_of(spring.coefficients.begin(), spring.coefficients.end(),
+                  [](const Vec3& c) { return c.allFinite(); });
+  if (!fits || !(spring.stiffness > 0.0) || !std::isfinite(spring.stiffness)) {
+    throw InvalidInput(fmt::format(
+        "load case '{}': a spring of stiffness {} has {} nodes and {} "
+        "coefficients; give a stiffness above 0 and a finite coefficient for "
+        "each node of the mesh",
+        load_case.name, spring.stiffness, spring.nodes.size(),
+        spring.coefficients.size()));
+  }
+}
+
+void add_node_springs(const TetMesh& mesh, const loads::LoadCase& load_case,
+                      int order, std::vector<Entry>& entries) {
+  const element::NodeElements around = element::node_elements(
+      mesh.elements, mesh.nodes_per_element(), mesh.nodes_per_element(),
+      static_cast<int>(mesh.nodes.size()));
+  for (const loads::NodeSpring& spring : load_case.node_springs) {
+    check(mesh, spring, load_case);
+    const SpringElement at = find_element(mesh, around, spring.nodes);
+    if (at.element < 0) {
+      throw InvalidInput(fmt::format(
+          "load case '{}': the nodes {} of a spring belong to no element that "
+          "has them all; a spring can act between nodes of one",
+          load_case.name, fmt::join(spring.nodes, ", ")));
+    }
+    const auto ids = mesh.element(at.element);
+    Points c(ids.size(), Vec3::Zero());
+    for (std::size_t k = 0; k < at.local.size(); ++k) {
+      c[static_cast<std::size_t>(at.local[k])] += spring.coefficients[k];
+    }
+    if (order == 1) {
+      c = on_corners(c);
+    }
+    for (std::size_t a = 0; a < c.size(); ++a) {
+      for (std::size_t b = 0; b < c.size(); ++b) {
+        if (ids[a] >= ids[b] && !c[a].isZero(0.0) && !c[b].isZero(0.0)) {
+          entries.push_back(
+              {{ids[a], ids[b]}, spring.stiffness * c[a] * c[b].transpose()});
+        }
+      }
+    }
+  }
+}
+
 /// Sorted, with the entries of one place added in their order.
 SpringBlocks merged(std::vector<Entry> entries) {
   std::stable_sort(entries.begin(), entries.end(),
@@ -154,6 +248,15 @@ std::vector<SpringSet> spring_sets(const TetMesh& mesh,
       sets.push_back(spring_set(mesh, bed, bed.normal, std::nullopt));
     }
   }
+  for (const loads::NodeSpring& spring : load_case.node_springs) {
+    check(mesh, spring, load_case);
+    const bool alike = !sets.empty() && sets.back().nodal &&
+                       sets.back().stiffness == spring.stiffness;
+    if (!alike) {
+      sets.push_back({.stiffness = spring.stiffness, .nodal = true});
+    }
+    sets.back().springs.push_back({spring.nodes, spring.coefficients});
+  }
   return sets;
 }
 
@@ -163,6 +266,9 @@ SpringBlocks spring_blocks(const TetMesh& mesh,
   for (const loads::SpringBed& bed : load_case.springs) {
     check(bed, load_case);
     add_bed_stiffness(mesh, bed, order, entries);
+  }
+  if (!load_case.node_springs.empty()) {
+    add_node_springs(mesh, load_case, order, entries);
   }
   return merged(std::move(entries));
 }
@@ -224,6 +330,15 @@ std::vector<HeldDirection> sprung_directions(const TetMesh& mesh,
       if (bed.normal > 0.0) {
         held.push_back({normals.nodes[k], normals.normal[k],
                         std::max(kExactDirection, 2.0 * normals.spread[k])});
+      }
+    }
+  }
+  for (const loads::NodeSpring& spring : load_case.node_springs) {
+    check(mesh, spring, load_case);
+    for (std::size_t a = 0; a < spring.nodes.size(); ++a) {
+      if (!spring.coefficients[a].isZero(0.0)) {
+        held.push_back({spring.nodes[a], spring.coefficients[a].normalized(),
+                        kExactDirection});
       }
     }
   }

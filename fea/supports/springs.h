@@ -20,11 +20,13 @@ struct SpringBlocks {
 };
 
 /// S_ab = int N_a N_b (axes diag(components) axes^T + normal n n^T) dA over all
-/// beds of the load case, with seven points a face. `order`: that of the shape
-/// functions; 1 on a ten-node mesh gives the corners' plane faces, which is
-/// what multigrid's four-node level needs. Throws InvalidInput, naming load
-/// case and surface: unknown surfaces, axes that span no plane, stiffnesses
-/// that are negative, not finite or all 0.
+/// beds of the load case, with seven points a face, and k c_a c_b^T of its
+/// springs at nodes. `order`: that of the shape functions; 1 on a ten-node mesh
+/// gives the corners' plane faces, and the ends of mid-sides half of what these
+/// have, which is what multigrid's four-node level needs. Throws InvalidInput,
+/// naming load case and surface: unknown surfaces, axes that span no plane,
+/// stiffnesses that are negative, not finite or all 0, a spring whose nodes are
+/// not of one element.
 SpringBlocks spring_blocks(const TetMesh& mesh,
                            const loads::LoadCase& load_case, int order);
 
@@ -57,12 +59,13 @@ struct SpringSet {
                              // function x direction
   };
   std::vector<Spring> springs;
+  bool nodal = false;  // of springs at nodes, not of a bed
 };
 
-/// The same beds as springs: S = sum of k c c^T, the quadrature of
+/// The same as springs: S = sum of k c c^T, the quadrature of
 /// spring_blocks point by point, for programs that know springs and no beds.
-/// A set for each component and normal that has a stiffness. Throws what
-/// spring_blocks throws.
+/// A set for each component and normal that has a stiffness, and for each
+/// stiffness of the springs at nodes. Throws what spring_blocks throws.
 std::vector<SpringSet> spring_sets(const TetMesh& mesh,
                                    const loads::LoadCase& load_case);
 

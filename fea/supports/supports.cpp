@@ -1,6 +1,7 @@
 #include "fea/supports/supports.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -41,6 +42,21 @@ void add_components(const TetMesh& mesh, const loads::Support& support,
       }
     }
   }
+}
+
+void hold_node(const TetMesh& mesh, const loads::HeldNode& node,
+               const loads::LoadCase& load_case,
+               std::vector<HeldDirection>& held) {
+  const double length = node.direction.norm();
+  if (node.node < 0 || node.node >= static_cast<int>(mesh.nodes.size()) ||
+      !(length > 0.0) || !std::isfinite(length)) {
+    throw InvalidInput(fmt::format(
+        "load case '{}': node {} of {} is held along ({}, {}, {}); give a node "
+        "of the mesh and a direction with a length",
+        load_case.name, node.node, mesh.nodes.size(), node.direction.x(),
+        node.direction.y(), node.direction.z()));
+  }
+  held.push_back({node.node, node.direction / length, kExactDirection});
 }
 
 void add_normals(const TetMesh& mesh, const loads::Support& support,
@@ -113,6 +129,9 @@ std::vector<HeldDirection> held_directions(const TetMesh& mesh,
     }
   };
   add(true);
+  for (const loads::HeldNode& node : load_case.held_nodes) {
+    hold_node(mesh, node, load_case, held);
+  }
   add(false);
   return held;
 }

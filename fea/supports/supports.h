@@ -16,13 +16,14 @@ struct HeldDirection {
   Vec3 direction;      // unit
   double uncertainty;  // kExactDirection; of normals twice what the facets'
                        // normals around the node differ by, if more
-  int support = -1;    // index in the load case; -1: a spring's
+  int support = -1;    // index in the load case; -1: a held node's, a spring's
 };
 inline constexpr double kExactDirection = 1e-6;
 
-/// Of all supports: fixed components first, then normals. Throws InvalidInput:
-/// a surface that is unknown, has no normal or, under symmetry, is no plane;
-/// axes that span none.
+/// Of all supports and held nodes: fixed components first, then single nodes,
+/// then normals. Throws InvalidInput: a surface that is unknown, has no normal
+/// or, under symmetry, is no plane; axes that span none; a node that the mesh
+/// has not, a direction without length.
 std::vector<HeldDirection> held_directions(const TetMesh& mesh,
                                            const loads::LoadCase& load_case);
 

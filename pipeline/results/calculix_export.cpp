@@ -34,7 +34,8 @@ io::DeckMaterial material_of(const element::Material& m) {
 }
 
 bool along_axes(const loads::LoadCase& load_case) {
-  return std::all_of(load_case.supports.begin(), load_case.supports.end(),
+  return load_case.held_nodes.empty() &&
+         std::all_of(load_case.supports.begin(), load_case.supports.end(),
                      [](const loads::Support& s) {
                        return s.kind == loads::SupportKind::Components &&
                               !s.axes;
@@ -113,6 +114,7 @@ bool same(const std::vector<io::DeckEquation>& a,
 void add_loads(const loads::LoadCase& load_case, const TetMesh& mesh,
                io::DeckStep& step) {
   loads::LoadCase rest{.name = load_case.name};
+  rest.nodal = load_case.nodal;
   rest.forces = load_case.forces;
   rest.tractions = load_case.tractions;
   rest.remote_loads = load_case.remote_loads;
@@ -124,7 +126,8 @@ void add_loads(const loads::LoadCase& load_case, const TetMesh& mesh,
     }
   }
   if (!rest.forces.empty() || !rest.tractions.empty() ||
-      !rest.remote_loads.empty() || !rest.pressures.empty()) {
+      !rest.remote_loads.empty() || !rest.pressures.empty() ||
+      rest.nodal.size() != 0) {
     step.nodal_forces = loads::nodal_forces(mesh, rest);
   }
   step.gravity = load_case.gravity;
@@ -141,13 +144,16 @@ void add_springs(const std::vector<loads::LoadCase>& load_cases,
                  std::size_t step, const TetMesh& mesh,
                  io::CalculixDeck& deck) {
   const loads::LoadCase& load_case = load_cases[step];
-  if (load_case.springs.empty()) {
+  if (load_case.springs.empty() && load_case.node_springs.empty()) {
     return;
   }
   const auto number = static_cast<int>(step);
-  const auto same_beds = std::find_if(
-      load_cases.begin(), load_cases.begin() + number,
-      [&](const loads::LoadCase& c) { return c.springs == load_case.springs; });
+  const auto same_beds =
+      std::find_if(load_cases.begin(), load_cases.begin() + number,
+                   [&](const loads::LoadCase& c) {
+                     return c.springs == load_case.springs &&
+                            c.node_springs == load_case.node_springs;
+                   });
   const auto earlier = static_cast<int>(same_beds - load_cases.begin());
   if (earlier < number) {
     for (io::DeckSprings& set : deck.springs) {

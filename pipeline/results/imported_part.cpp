@@ -132,20 +132,6 @@ std::vector<Edge> labels_beside(const SurfaceMesh& surface,
   return labels;
 }
 
-/// Throws where the part is of another order of size than the run's own: its
-/// unit is another one, or a point of it is wrong.
-void check_size(const SurfaceMesh& surface, const Points& own,
-                const std::string& path, const std::string& length_unit) {
-  const double size = bounding_diagonal(surface.points);
-  const double expected = bounding_diagonal(own);
-  if (size > kMostLarger * expected || kMostLarger * size < expected) {
-    throw InvalidInput(fmt::format(
-        "{}: the part is {:.4g} {} across, the run's own {:.4g} {}; is the "
-        "file's unit {}, as it was read, or is a point of it wrong?",
-        path, size, length_unit, expected, length_unit, length_unit));
-  }
-}
-
 /// How many facets with_short_edges() leaves, somewhat more rather than less.
 std::size_t facets_with_short_edges(const SurfaceMesh& surface,
                                     double longest) {
@@ -191,6 +177,19 @@ TetMesh filled(const SurfaceMesh& surface, const PartShape* shape, double edge,
 }
 
 }  // namespace
+
+void require_like_size(const Points& points, const Points& own,
+                       const std::string& path,
+                       const std::string& length_unit) {
+  const double size = bounding_diagonal(points);
+  const double expected = bounding_diagonal(own);
+  if (size > kMostLarger * expected || kMostLarger * size < expected) {
+    throw InvalidInput(fmt::format(
+        "{}: the part is {:.4g} {} across, the run's own {:.4g} {}; is the "
+        "file's unit {}, as it was read, or is a point of it wrong?",
+        path, size, length_unit, expected, length_unit, length_unit));
+  }
+}
 
 SurfaceMesh with_short_edges(SurfaceMesh surface, double longest,
                              const PartShape* shape) {
@@ -263,7 +262,8 @@ PartFigures imported_part_figures(const std::filesystem::path& path,
   SurfaceMesh own =
       renamed(read(edge), names, path.string(), run.input.units.length);
   check_names(own, run.fields.inputs, path.string(), run.input.units.length);
-  check_size(own, run.fields.mesh.nodes, path.string(), run.input.units.length);
+  require_like_size(own.points, run.fields.mesh.nodes, path.string(),
+                    run.input.units.length);
   forward::require_work(
       forward::estimate_work(enclosed_volume(own),
                              facets_with_short_edges(own, longest), edge),

@@ -18,6 +18,11 @@ namespace meniscus::results {
 SurfaceMesh with_short_edges(SurfaceMesh surface, double longest,
                              const PartShape* shape = nullptr);
 
+/// Throws InvalidInput where a part's points are of another order of size than
+/// the run's `own`: its unit is another one, or a point of it is wrong.
+void require_like_size(const Points& points, const Points& own,
+                       const std::string& path, const std::string& length_unit);
+
 /// A face's name in a file -> what the run calls it.
 using FaceNames = std::map<std::string, std::string>;
 

@@ -52,12 +52,15 @@ class Bases:
         subprocess.run(
             [program, "run", CASES / case, "--out", self.run, "--no-pictures",
              "--no-frames", "--export", "step", "--export", "stl", "--export",
-             "obj", *sizes_of(case)], check=True, stdout=subprocess.DEVNULL,
+             "obj", "--export", "inp", *sizes_of(case)], check=True, stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL)
         self.parts = sorted(path for path in self.run.iterdir()
                             if path.suffix in (".step", ".stl", ".obj"))
         assert {path.suffix for path in self.parts} == {
             ".step", ".stl", ".obj"}, self.parts
+        self.decks = [*self.run.glob("*.inp"),
+                      *sorted((CORPUS / "deck").glob("*.inp"))]
+        assert len(self.decks) > 2, self.decks
         self.datafiles = [CASES / "cube_to_sphere" / "cube.fe",
                           *sorted((CORPUS / "fe").glob("*.fe"))]
         self.results = ["result.json", "part.vtu", "film.vtp", "study.sqlite",
@@ -134,6 +137,15 @@ def of_part(choice, folder, bases):
     return ["compare", bases.run, target]
 
 
+def of_deck(choice, folder, bases):
+    source = choice.choice(bases.decks)
+    target = folder / "part.inp"
+    target.write_bytes(mutations.mutate(choice, source.read_bytes(), "text"))
+    if source.stem == "part" and choice.randrange(4) == 0:
+        return ["compare", bases.run, target]
+    return ["solve", target, "--out", folder / "out"]
+
+
 def of_results(choice, folder, bases):
     out = folder / "out"
     shutil.copytree(bases.run, out)
@@ -177,9 +189,9 @@ def damaged_result(name, command):
 
 
 KINDS = (of_case, of_case, of_case, of_case, of_datafile, of_curve, of_part,
-         of_results)
+         of_results, of_deck)
 # For --kind: one reader each.
-READERS = {"toml": of_toml, "step": of_step,
+READERS = {"toml": of_toml, "step": of_step, "deck": of_deck,
            "vtu": damaged_result("part.vtu", ["report"]),
            "sqlite": damaged_result("study.sqlite", ["study", "show"])}
 

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """One case at its quick size ends with the figures of its expected.json, and
 the wrong cases made from it end with the messages told there."""
+import json
 import os
 import sys
 import unittest
@@ -14,6 +15,8 @@ import cases  # noqa: E402  (scripts/ is found only now)
 NAME = os.environ["MENISCUS_CASE"]
 # The case whose pictures are drawn, too: one will do, and each costs seconds.
 PICTURED = "two_arm"
+# Coordinates and forces have 13 digits in a deck; a clamp's peak feels most.
+WRITTEN = 1e-7
 
 
 class Case(ProgramTest):
@@ -33,6 +36,26 @@ class Case(ProgramTest):
             with self.subTest(rate=rate.item["path"]):
                 self.assertEqual(rate.problems(), [])
 
+    def check_deck(self, part):
+        """What `export --format inp` writes is solved to the run's figures."""
+        result = json.loads((part / "result.json").read_text())
+        if not result.get("stress"):
+            return
+        self.expect(self.call("export", part, "--format", "inp", "--out",
+                              "own.inp"), 0)
+        self.expect(self.call("solve", "own.inp", "--out", "solved"), 0)
+        solved = json.loads((self.folder / "solved/result.json").read_text())
+        self.assertEqual(list(solved["stress"]), list(result["stress"]))
+        pairs = [(solved["fea"]["strain_energy"],
+                  result["fea"]["strain_energy"])]
+        zones = "exclusion" in result  # whose peaks a deck does not leave out
+        for name, stress in () if zones else result["stress"].items():
+            pairs.append((solved["stress"][name]["readings"]["points"],
+                          stress["readings"]["points"]))
+        for found, expected in pairs:
+            self.assertLess(abs(found / expected - 1.0), WRITTEN,
+                            f"{part}: {found}, {expected}")
+
     def check_files(self, outcome):
         out = outcome.folder
         if outcome.run["command"].startswith("evolve"):
@@ -42,6 +65,7 @@ class Case(ProgramTest):
         members = outcome.result.get("members", [])
         for part in [out / m["folder"] for m in members] or [out]:
             self.assertTrue(list(part.glob("part_*.stl")), part)
+            self.check_deck(part)
             for name in ("film.vtp", "part.vtu", "history.csv",
                          "study.sqlite"):
                 self.assertGreater((part / name).stat().st_size, 100, name)

@@ -298,6 +298,24 @@ class Files(ProgramTest):
             self.assertIn(done.returncode, (0, 2, 3),
                           f"{path}: {done.stderr}")
 
+    def test_a_damaged_deck(self):
+        """Refused by its line, or solved; tests/mutations damages more."""
+        run = self.run_once()
+        self.expect(self.call("export", run, "--format", "inp", "--out",
+                              "own.inp"), 0)
+        whole = (self.folder / "own.inp").read_bytes()
+        decks = [whole[:len(whole) * k // 9] for k in range(1, 9)]
+        choice = random.Random(23)
+        for _ in range(40 if ALL else 8):
+            decks.append(mutations.mutate(choice, whole, "text"))
+        for number, data in enumerate(decks):
+            path = self.folder / f"deck {number}.inp"
+            path.write_bytes(data)
+            done = self.limited("solve", path, "--out", "solved")
+            self.assertIn(done.returncode, (0, 2, 3), done.stderr)
+            if done.returncode == 2:
+                self.assertRegex(done.stderr, rf"deck {number}\.inp:\d+: ")
+
     def test_damaged_results(self):
         run = self.run_once()
         whole = (run / "part.vtu").read_bytes()

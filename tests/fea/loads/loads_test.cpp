@@ -1,9 +1,13 @@
+#include <algorithm>
+#include <cmath>
+
 #include <Eigen/Geometry>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "core/math/expression.h"
+#include "fea/loads/face_pressures.h"
 #include "tests/support/parts.h"
 
 namespace meniscus::loads_test {
@@ -251,6 +255,60 @@ TEST(Loads, SurfaceWithoutAreaIsRefusedByName) {
   }
   EXPECT_THAT([&] { loads::surface_weights(mesh, "x1"); },
               testing::ThrowsMessage<InvalidInput>(testing::HasSubstr("x1")));
+}
+
+/// The boundary's faces of a label as faces of elements.
+std::vector<loads::FacePressure> faces_of(const TetMesh& mesh,
+                                          const std::string& surface,
+                                          double pressure) {
+  std::vector<loads::FacePressure> faces;
+  for (int f = 0; f < mesh.face_count(); ++f) {
+    if (mesh.face_label[f] != mesh.label_of(surface)) {
+      continue;
+    }
+    const auto ids = mesh.face(f);
+    const auto element = mesh.element(mesh.face_element[f]);
+    for (int c = 0; c < 4; ++c) {
+      if (std::find(ids.begin(), ids.begin() + 3, element[c]) ==
+          ids.begin() + 3) {
+        faces.push_back({mesh.face_element[f], c, pressure});
+      }
+    }
+  }
+  return faces;
+}
+
+TEST(FacePressures, OfASurfaceAreItsPressure) {
+  const TetMesh curved = parts::quarter_tube(3, 0.5);
+  const TetMesh plane = shapes::brick({2.0, 3.0, 4.0}, 2, 2, 2);
+  for (const TetMesh& mesh : {curved, plane}) {
+    for (const std::string& surface : mesh.labels) {
+      loads::LoadCase load_case;
+      load_case.pressures = {{surface, 2.5}};
+      const VectorX expected = loads::nodal_forces(mesh, load_case);
+      const VectorX found =
+          loads::face_pressure_forces(mesh, faces_of(mesh, surface, 2.5));
+      EXPECT_LE((found - expected).norm(), kLoadRounding * expected.norm())
+          << surface;
+    }
+  }
+}
+
+// All faces of one element, two or three of them inside: no resultant.
+TEST(FacePressures, AroundAnElementBalance) {
+  const TetMesh mesh = parts::quarter_tube(3, 0.5);
+  std::vector<loads::FacePressure> around;
+  for (int c = 0; c < 4; ++c) {
+    around.push_back({mesh.element_count() / 2, c, 7.0});
+  }
+  const VectorX f = loads::face_pressure_forces(mesh, around);
+  EXPECT_LE(total_force(f).norm(), kLoadRounding * f.norm());
+  EXPECT_GT(f.norm(), 0.0);
+  EXPECT_THROW(loads::face_pressure_forces(mesh, {{0, 4, 1.0}}), InvalidInput);
+  EXPECT_THROW(
+      loads::face_pressure_forces(mesh, {{mesh.element_count(), 0, 1.0}}),
+      InvalidInput);
+  EXPECT_THROW(loads::face_pressure_forces(mesh, {{0, 0, NAN}}), InvalidInput);
 }
 
 }  // namespace

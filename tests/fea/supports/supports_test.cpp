@@ -1,10 +1,13 @@
 #include "fea/supports/supports.h"
 
+#include <algorithm>
+
 #include <Eigen/Geometry>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "core/error.h"
+#include "fea/element/surface_faces.h"
 #include "fea/supports/springs.h"
 #include "tests/support/parts.h"
 
@@ -413,6 +416,116 @@ TEST(NodeFreedom, NormalsOfOneSmoothSurfaceUnderTwoNamesCountOnce) {
     EXPECT_NEAR(P.trace(), 2.0, 1e-12);
     EXPECT_LE((P * P - P).norm(), 1e-12);
   }
+}
+
+/// Every node of a surface held along three directions.
+std::vector<loads::HeldNode> held_nodes_of(const TetMesh& mesh,
+                                           const std::string& surface,
+                                           const Mat3& directions) {
+  std::vector<loads::HeldNode> held;
+  const int label = element::surface_label(mesh, surface);
+  for (const int node : element::surface_nodes(mesh, label)) {
+    for (int k = 0; k < 3; ++k) {
+      held.push_back({node, 2.5 * directions.col(k)});
+    }
+  }
+  return held;
+}
+
+TEST(HeldNodes, OfASurfaceAreItsSupport) {
+  for (const int order : {1, 2}) {
+    const TetMesh mesh = turned(bar(order));
+    loads::LoadCase by_surface = parts::pulled({5.0, 2.0, -3.0});
+    by_surface.supports.push_back(
+        {.surface = "y0",
+         .fix_y = true,
+         .axes = element::LocalAxes{turn().col(0), turn().col(1)}});
+    loads::LoadCase by_node = by_surface;
+    by_node.supports.clear();
+    by_node.held_nodes = held_nodes_of(mesh, "x0", turn());
+    for (const loads::HeldNode& node :
+         held_nodes_of(mesh, "y0", turn().col(1).replicate<1, 3>())) {
+      by_node.held_nodes.push_back(node);
+    }
+    EXPECT_LE(difference(solve(mesh, by_node).displacements[0],
+                         solve(mesh, by_surface).displacements[0]),
+              kSolvers);
+  }
+}
+
+// Six components at three nodes within the part hold it and nothing more: a
+// bar under end pressures strains evenly.
+TEST(HeldNodes, InsideThePartLeaveItFreeToStrain) {
+  for (const int order : {1, 2}) {
+    const TetMesh mesh = bar(order);
+    const auto node_at = [&](const Vec3& x) {
+      return static_cast<int>(
+          std::min_element(mesh.nodes.begin(), mesh.nodes.end(),
+                           [&](const Vec3& a, const Vec3& b) {
+                             return (a - x).norm() < (b - x).norm();
+                           }) -
+          mesh.nodes.begin());
+    };
+    const int a = node_at({1.0, 1.0 / 3.0, 1.0 / 3.0});
+    const int b = node_at({2.0, 1.0 / 3.0, 1.0 / 3.0});
+    const int c = node_at({1.0, 2.0 / 3.0, 1.0 / 3.0});
+    loads::LoadCase load_case{.name = "inside"};
+    load_case.held_nodes = {{a, Vec3::UnitX()}, {a, Vec3::UnitY()},
+                            {a, Vec3::UnitZ()}, {b, Vec3::UnitY()},
+                            {b, Vec3::UnitZ()}, {c, Vec3::UnitZ()}};
+    load_case.pressures = {{"x0", 21.0}, {"x1", 21.0}};
+    const equations::ElasticSolution solution = solve(mesh, load_case);
+    const double strain = 21.0 / 210000.0;
+    for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {
+      const Vec3 d = mesh.nodes[i] - mesh.nodes[a];
+      const Vec3 exact = strain * Vec3(-d.x(), 0.3 * d.y(), 0.3 * d.z());
+      EXPECT_LE((solution.displacements[0].segment<3>(3L * i) - exact).norm(),
+                kExact * strain * 3.0);
+    }
+    EXPECT_LE(solution.reactions[0].lpNorm<Eigen::Infinity>(), 21.0 * kExact);
+    load_case.held_nodes.pop_back();
+    expect_refused<SolverError>(mesh, load_case, "rotate about x");
+    load_case.held_nodes.push_back({-1, Vec3::UnitZ()});
+    expect_refused<InvalidInput>(mesh, load_case, "a node of the mesh");
+    load_case.held_nodes.back() = {c, Vec3::Zero()};
+    expect_refused<InvalidInput>(mesh, load_case, "with a length");
+  }
+}
+
+TEST(NodeSprings, OneByOneAreTheirBed) {
+  for (const int order : {1, 2}) {
+    const TetMesh mesh = turned(bar(order));
+    loads::LoadCase bed = parts::pulled({5.0, 2.0, -3.0});
+    bed.supports.clear();
+    bed.springs = {{"x0", {2000.0, 0.0, 3000.0}, 5000.0}, {"y0", {}, 100.0}};
+    loads::LoadCase single = bed;
+    single.springs.clear();
+    for (const supports::SpringSet& set : supports::spring_sets(mesh, bed)) {
+      for (const supports::SpringSet::Spring& spring : set.springs) {
+        single.node_springs.push_back(
+            {set.stiffness, spring.nodes, spring.coefficients});
+      }
+    }
+    for (const auto kind :
+         {equations::SolverKind::Cholesky, equations::SolverKind::Multigrid}) {
+      const equations::ElasticSolution expected = solve(mesh, bed, kind);
+      const equations::ElasticSolution found = solve(mesh, single, kind);
+      EXPECT_LE(difference(found.displacements[0], expected.displacements[0]),
+                kSolvers);
+      EXPECT_LE(found.report.iterations,
+                kAlike * expected.report.iterations + 1);
+    }
+  }
+}
+
+TEST(NodeSprings, MustBeOfOneElement) {
+  const TetMesh mesh = bar(2);
+  loads::LoadCase load_case = parts::pulled({1.0, 0.0, 0.0});
+  const int last = mesh.corner_count - 1;
+  load_case.node_springs = {{1.0, {0, last}, {Vec3::UnitX(), Vec3::UnitX()}}};
+  expect_refused<InvalidInput>(mesh, load_case, "no element that has them all");
+  load_case.node_springs = {{0.0, {0}, {Vec3::UnitX()}}};
+  expect_refused<InvalidInput>(mesh, load_case, "stiffness above 0");
 }
 
 }  // namespace
