@@ -28,7 +28,7 @@ struct DimensionRow {
   const char* name;
   UnitPowers powers;
 };
-constexpr std::array<DimensionRow, 15> kDimensions = {{
+constexpr std::array<DimensionRow, 16> kDimensions = {{
     {Dimension::None, "number", {}},
     {Dimension::Length, "length", {.length = 1}},
     {Dimension::Angle, "angle", {}},
@@ -45,6 +45,7 @@ constexpr std::array<DimensionRow, 15> kDimensions = {{
     {Dimension::Time, "time", {.time = 1}},
     {Dimension::Acceleration, "acceleration", {.length = 1, .time = -2}},
     {Dimension::Rate, "rate (angle per time)", {.time = -1}},
+    {Dimension::Frequency, "frequency", {.time = -1}},
     {Dimension::Foundation, "stiffness per area", {.length = -3, .force = 1}},
 }};
 const DimensionRow& row_of(Dimension dimension) {
@@ -345,6 +346,8 @@ std::string UnitSystem::unit_of(Dimension dimension) const {
       return length + "/s2";
     case Dimension::Rate:
       return "rad/s";
+    case Dimension::Frequency:
+      return "Hz";
     case Dimension::Foundation:
       return force + "/" + length + "3";
   }

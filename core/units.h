@@ -22,6 +22,7 @@ enum class Dimension {
   Time,
   Acceleration,  // also force per mass
   Rate,          // angle per time
+  Frequency,     // cycles per time
   Foundation     // force per length and area
 };
 const char* name_of(Dimension dimension);

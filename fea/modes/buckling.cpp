@@ -91,7 +91,8 @@ BucklingModes buckling_modes(const elastic::ElasticModel& model,
   const solver::NodalMatrix A =
       weakening(mesh, op, loads, displacement, options.sense);
   const EigenPairs pairs =
-      eigenpairs_of(op, A, solver::Columns(),
+      eigenpairs_of(op, A,
+                    start_columns(*op.order, solver::Columns(), options.start),
                     {.count = options.count,
                      .tolerance = options.tolerance,
                      .floor = 1.0 / options.largest,

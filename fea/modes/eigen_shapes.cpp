@@ -23,6 +23,33 @@ EigenPairs eigenpairs_of(const equations::ElasticOperator& op,
   return pairs;
 }
 
+solver::Columns start_columns(const solver::NodeOrder& order,
+                              const solver::Columns& own,
+                              const std::vector<VectorX>* shapes) {
+  if (shapes == nullptr || shapes->empty()) {
+    return own;
+  }
+  const auto rows = static_cast<Eigen::Index>(3 * order.to_mesh.size());
+  const Eigen::Index first = own.cols();
+  solver::Columns start(rows,
+                        first + static_cast<Eigen::Index>(shapes->size()));
+  if (first > 0) {
+    start.leftCols(first) = own;
+  }
+  for (std::size_t k = 0; k < shapes->size(); ++k) {
+    const VectorX& shape = (*shapes)[k];
+    if (shape.size() != rows) {
+      throw InvalidInput(
+          fmt::format("eigenvalues: a shape to begin with has {} numbers for "
+                      "{} nodes",
+                      shape.size(), order.to_mesh.size()));
+    }
+    start.col(first + static_cast<Eigen::Index>(k)) =
+        equations::to_solver(order, shape);
+  }
+  return start;
+}
+
 std::optional<Failure> why_not(const EigenPairs& pairs,
                                const std::string& what) {
   switch (pairs.end) {

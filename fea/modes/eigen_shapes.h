@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/error.h"
 #include "fea/equations/elastic_operator.h"
@@ -17,6 +18,11 @@ EigenPairs eigenpairs_of(const equations::ElasticOperator& op,
                          const solver::NodalMatrix& A,
                          const solver::Columns& start,
                          const EigenOptions& options);
+
+/// `own` columns and after them `shapes` (mesh's numbering, may be null).
+solver::Columns start_columns(const solver::NodeOrder& order,
+                              const solver::Columns& own,
+                              const std::vector<VectorX>* shapes);
 
 /// Why there is no answer; nothing when the pairs converged.
 std::optional<Failure> why_not(const EigenPairs& pairs,

@@ -62,7 +62,8 @@ NaturalModes solve(const TetMesh& mesh, const equations::ElasticOperator& op,
   const solver::NodalMatrix M = solver::mass_matrix(
       *op.table, op.x, densities(mesh, op.materials), options.mass);
   const EigenPairs pairs =
-      eigenpairs_of(op, M, shifted.start,
+      eigenpairs_of(op, M,
+                    start_columns(*op.order, shifted.start, options.start),
                     {.count = options.count + shifted.rigid,
                      .tolerance = options.tolerance,
                      .max_iterations = options.max_iterations,

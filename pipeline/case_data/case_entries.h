@@ -203,6 +203,8 @@ struct AnalysisEntry {
   int processes = 2;  // of Distributed
   // Eigenvalues of the best design:
   static constexpr int kFree = -1;  // not held at all
+  /// More at once would take more memory than the part's own solve.
+  static constexpr int kMostModes = 50;
   int frequencies = 0;              // lowest natural ones
   int supports_of = 0;  // held as in this load case: index, or kFree
   /// Smallest factors per load case; without it one, roughly; 0: none.
@@ -215,6 +217,8 @@ enum class ResponseKind {
   Rotation,
   Compliance,
   StrainEnergy,
+  BucklingFactor,
+  Frequency,
   Mass,
   Volume,
   CentreOfMass,
@@ -244,7 +248,7 @@ struct ResponseEntry {
   ResponseKind kind = ResponseKind::MeanDisplacement;
   std::string surface;
   QuantityVector direction;  // an axis for Rotation
-  int load_case = 0;         // index
+  int load_case = 0;         // index; of Frequency also AnalysisEntry::kFree
   std::optional<PlaceQuantity> weight;
   double power = 8.0;
   double sharpness = 50.0;
@@ -258,6 +262,10 @@ struct ResponseEntry {
   std::string scan;                // of scan_distance: its path
   scan::ScanMeasure measure = scan::ScanMeasure::Rms;
   int body = 0;  // index
+  /// Of BucklingFactor and Frequency: which mode, from 1; and the width of the
+  /// cluster that a bound is over, 0: of that mode alone.
+  int number = 1;
+  double cluster = 0.0;
   /// Of Expression: over the case's names, then the responses above it.
   Quantity value;
   SourceLine line = 0;

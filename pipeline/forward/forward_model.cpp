@@ -61,7 +61,8 @@ DesignGradient ForwardModel::gradient(const Evaluation& evaluation,
   try {
     return design_gradient({*part_,
                             part_->context(fields.inputs, adjoint.film,
-                                           fields.mesh, fields.solution),
+                                           fields.mesh, fields.solution,
+                                           fields.response_modes),
                             evaluation.responses, adjoint.elastic},
                            responses);
   } catch (const InvalidInput& error) {

@@ -9,6 +9,7 @@
 #include "fea/functionals/thickness.h"
 #include "fea/stress/exclusion_zones.h"
 #include "pipeline/case_data/case.h"
+#include "pipeline/forward/response_modes.h"
 #include "pipeline/forward/scans.h"
 
 namespace meniscus::forward {
@@ -25,6 +26,7 @@ struct ResponseContext {
   const functionals::ThicknessPairs* pairs =
       nullptr;                   // thickness_pairs_of() the model
   const Scans* scans = nullptr;  // read_scans() of the case
+  const ResponseModes* modes = nullptr;  // of the design
 };
 
 /// One response's value and its partial derivatives, all else held. What is
