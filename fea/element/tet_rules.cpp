@@ -67,8 +67,8 @@ TetRule<Nodes> make_moment_rule() {
 TetRule<4> make_mass_rule() {
   TetRule<4> rule;
   for (int q = 0; q < kTetPoints<10>; ++q) {
-    rule.points.push_back(rule_point_at<4>(
-        rule_point<10>(q), kReferenceVolume / kTetPoints<10>));
+    rule.points.push_back(
+        rule_point_at<4>(rule_point<10>(q), kReferenceVolume / kTetPoints<10>));
   }
   return rule;
 }

@@ -7,18 +7,30 @@
 
 namespace meniscus::modes {
 
+namespace {
+
+/// Iterations after which a factor is quicker.
+constexpr int kSlow = 60;
+
+}  // namespace
+
 EigenPairs eigenpairs_of(const equations::ElasticOperator& op,
                          const solver::NodalMatrix& A,
                          const solver::Columns& start,
-                         const EigenOptions& options) {
+                         const EigenOptions& options, bool may_factor) {
   const solver::BlockPattern& pattern = op.table->pattern;
+  const bool small = 3 * pattern.nodes <= solver::kSecondChance;
+  EigenOptions first = options;
+  if (may_factor && small) {
+    first.max_iterations = std::min(options.max_iterations, kSlow);
+  }
   EigenPairs pairs = largest_eigenpairs(
-      {pattern, op.K, A, *op.preconditioner, op.freedom}, start, options);
-  if (pairs.end == EigenEnd::NotPositive &&
-      3 * pattern.nodes <= solver::kSecondChance) {
+      {pattern, op.K, A, *op.preconditioner, op.freedom}, start, first);
+  const bool slow = may_factor && pairs.end == EigenEnd::TooManyIterations;
+  if (small && (slow || pairs.end == EigenEnd::NotPositive)) {
     const auto factor = solver::make_direct(pattern, op.K, op.freedom);
-    pairs = largest_eigenpairs({pattern, op.K, A, *factor, op.freedom}, start,
-                               options);
+    pairs = largest_eigenpairs({pattern, op.K, A, *factor, op.freedom},
+                               slow ? pairs.x : start, options);
   }
   return pairs;
 }

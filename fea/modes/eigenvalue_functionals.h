@@ -12,15 +12,16 @@ namespace meniscus::modes {
 
 /// Modes and what each counts; not owned.
 struct WeightedModes {
-  const std::vector<double>& values;  // factors or frequencies
+  const std::vector<double>& values;   // factors or frequencies
   const std::vector<VectorX>& shapes;  // 3 per node, of any length but 0
   const VectorX& weights;              // those of 0 cost nothing
 };
 
 /// sum weight_k factor_k with all its partial derivatives: by nodes and moduli
 /// with the modes' own motion, by displacement and temperature. From x^T (K +
-/// lambda K_g) x = 0: d lambda = -x^T (dK + lambda dK_g) x / x^T K_g x. `u`: the
-/// solution of the load case. Throws as geometric_work() and stiffness_work().
+/// lambda K_g) x = 0: d lambda = -x^T (dK + lambda dK_g) x / x^T K_g x. `u`:
+/// the solution of the load case. Throws as geometric_work() and
+/// stiffness_work().
 element::Functional factor_functional(
     const TetMesh& mesh, const std::vector<element::Material>& materials,
     const loads::LoadCase& load_case, const VectorX& u,

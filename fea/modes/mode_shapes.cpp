@@ -25,9 +25,8 @@ std::vector<double> pushing_work(const TetMesh& mesh,
         const Mat3& H = point.gradient[0];
         const Mat3 stress = element::stress_tensor(
             Eigen::Map<const element::Vec6>(points.stress[at].data()));
-        work[at] = std::max(0.0, -point.volume * stress.cwiseProduct(
-                                                           H.transpose() * H)
-                                                     .sum());
+        work[at] = std::max(
+            0.0, -point.volume * stress.cwiseProduct(H.transpose() * H).sum());
       });
   return work;
 }

@@ -19,9 +19,10 @@ namespace {
 
 void check_vector(const TetMesh& mesh, const char* what, const VectorX& v) {
   if (v.size() != static_cast<Eigen::Index>(3 * mesh.nodes.size())) {
-    throw InvalidInput(fmt::format("work of a mode: {} of {} numbers for {} "
-                                   "nodes",
-                                   what, v.size(), mesh.nodes.size()));
+    throw InvalidInput(
+        fmt::format("work of a mode: {} of {} numbers for {} "
+                    "nodes",
+                    what, v.size(), mesh.nodes.size()));
   }
 }
 
@@ -104,10 +105,9 @@ void add_geometric_gradient(const TetMesh& mesh, const CaseStress& stress,
         M *= point.volume;
         flux.by_gradient[1] = point.volume * s_B;
         if (stress.has_change()) {
-          flux.by_scalar = -point.volume *
-                           element::stress_tensor(law.heat_stress)
-                               .cwiseProduct(B)
-                               .sum();
+          flux.by_scalar =
+              -point.volume *
+              element::stress_tensor(law.heat_stress).cwiseProduct(B).sum();
         }
       });
 }
@@ -173,10 +173,10 @@ element::Functional geometric_work(
   // At given strains stress is in proportion to Young's modulus.
   result.by_modulus = region_sums(mesh, materials.size(), parts);
   for (std::size_t r = 0; r < materials.size(); ++r) {
-    result.by_modulus[r] = materials[r].orthotropic
-                               ? 0.0
-                               : result.by_modulus[r] /
-                                     materials[r].youngs_modulus;
+    result.by_modulus[r] =
+        materials[r].orthotropic
+            ? 0.0
+            : result.by_modulus[r] / materials[r].youngs_modulus;
   }
   return result;
 }
@@ -279,8 +279,8 @@ VectorX vibration_reactions(const TetMesh& mesh,
       mesh, element::SweepTargets<1, 1>{.fields = {&x}, .outputs = {&forces}},
       [&](const element::SweepPoint<1>& point, element::SweepFlux<1>& flux) {
         flux.by_gradient[0] =
-            point.volume * laws[mesh.element_region[point.element]].stress(
-                               point.gradient[0]);
+            point.volume *
+            laws[mesh.element_region[point.element]].stress(point.gradient[0]);
       });
   if (square != 0.0) {
     std::vector<double> density;

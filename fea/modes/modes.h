@@ -23,6 +23,7 @@ struct ModeOptions {
   const std::vector<element::Material>* materials = nullptr;
   /// Shapes of another design of the same mesh to begin with, not owned.
   const std::vector<VectorX>* start = nullptr;
+  bool may_factor = false;  // see eigenpairs_of()
 };
 
 struct NaturalModes {

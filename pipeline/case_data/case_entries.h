@@ -205,7 +205,7 @@ struct AnalysisEntry {
   static constexpr int kFree = -1;  // not held at all
   /// More at once would take more memory than the part's own solve.
   static constexpr int kMostModes = 50;
-  int frequencies = 0;              // lowest natural ones
+  int frequencies = 0;  // lowest natural ones
   int supports_of = 0;  // held as in this load case: index, or kFree
   /// Smallest factors per load case; without it one, roughly; 0: none.
   std::optional<int> buckling;

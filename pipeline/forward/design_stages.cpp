@@ -119,10 +119,10 @@ bool compute_responses(const FrozenPart& part, StagedDesign& staged) {
     return false;
   }
   try {
-    result.responses = respond(
-        part.input,
-        part.context(fields.inputs, staged.adjoint.film, fields.mesh,
-                     fields.solution, fields.response_modes));
+    result.responses =
+        respond(part.input,
+                part.context(fields.inputs, staged.adjoint.film, fields.mesh,
+                             fields.solution, fields.response_modes));
   } catch (const InvalidInput& error) {  // an expression of place
     result.failure = Failure{FailureKind::NotANumber, error.what()};
     return false;

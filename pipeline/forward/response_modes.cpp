@@ -58,15 +58,16 @@ class ModeSearch {
   std::optional<Failure> buckling(int count,
                                   const std::vector<VectorX>* start) {
     const auto c = static_cast<std::size_t>(found_.load_case);
-    modes::BucklingModes modes = modes::buckling_modes(
-        task_.model, task_.mesh, task_.inputs.load_cases, found_.load_case,
-        task_.solution.displacements[c],
-        {.count = count,
-         .tolerance = kModeTolerance,
-         .largest = kLargestFactor,
-         .monitor = task_.monitor,
-         .materials = &task_.inputs.materials,
-         .start = start});
+    modes::BucklingModes modes =
+        modes::buckling_modes(task_.model, task_.mesh, task_.inputs.load_cases,
+                              found_.load_case, task_.solution.displacements[c],
+                              {.count = count,
+                               .tolerance = kModeTolerance,
+                               .largest = kLargestFactor,
+                               .monitor = task_.monitor,
+                               .materials = &task_.inputs.materials,
+                               .start = start,
+                               .may_factor = true});
     found_.values = std::move(modes.factors);
     found_.shapes = std::move(modes.shapes);
     if (!modes.failure && found_.values.empty()) {
@@ -86,7 +87,8 @@ class ModeSearch {
                                      .tolerance = kModeTolerance,
                                      .monitor = task_.monitor,
                                      .materials = &task_.inputs.materials,
-                                     .start = start};
+                                     .start = start,
+                                     .may_factor = true};
     modes::NaturalModes modes =
         found_.load_case == case_data::AnalysisEntry::kFree
             ? modes::natural_modes(task_.mesh, task_.inputs.materials,
@@ -143,10 +145,10 @@ std::optional<ModalSum> followed(const ModeTask& task,
   if (!at) {
     return std::nullopt;
   }
-  return ModalSum{.value = found.values[*at],
-                  .weights = VectorX::Unit(
-                      static_cast<Eigen::Index>(found.values.size()),
-                      static_cast<Eigen::Index>(*at))};
+  return ModalSum{
+      .value = found.values[*at],
+      .weights = VectorX::Unit(static_cast<Eigen::Index>(found.values.size()),
+                               static_cast<Eigen::Index>(*at))};
 }
 
 Failure too_few(const ResponseEntry& response, std::size_t known,
@@ -219,9 +221,8 @@ class Problem {
     std::vector<ModalSum> own;
     for (const int r : responses_) {
       std::optional<ModalSum> sum =
-          entry(r).cluster > 0.0
-              ? bounded(entry(r), found_, complete)
-              : followed(task_, entry(r), found_, base_);
+          entry(r).cluster > 0.0 ? bounded(entry(r), found_, complete)
+                                 : followed(task_, entry(r), found_, base_);
       if (!sum) {
         return r;
       }
@@ -248,14 +249,13 @@ ResponseModes find_response_modes(const ModeTask& task) {
     if (!is_modal(responses[r].kind)) {
       continue;
     }
-    const auto known = std::find_if(
-        result.problems.begin(), result.problems.end(),
-        [&](const FoundModes& found) {
-          return found.kind == responses[r].kind &&
-                 found.load_case == responses[r].load_case;
-        });
-    const auto at =
-        static_cast<std::size_t>(known - result.problems.begin());
+    const auto known =
+        std::find_if(result.problems.begin(), result.problems.end(),
+                     [&](const FoundModes& found) {
+                       return found.kind == responses[r].kind &&
+                              found.load_case == responses[r].load_case;
+                     });
+    const auto at = static_cast<std::size_t>(known - result.problems.begin());
     if (known == result.problems.end()) {
       result.problems.push_back(
           {.kind = responses[r].kind, .load_case = responses[r].load_case});

@@ -24,8 +24,8 @@ struct ResponseContext {
   const frozen::FilmModel* film = nullptr;
   const settle::FilmState* film_state = nullptr;
   const functionals::ThicknessPairs* pairs =
-      nullptr;                   // thickness_pairs_of() the model
-  const Scans* scans = nullptr;  // read_scans() of the case
+      nullptr;                           // thickness_pairs_of() the model
+  const Scans* scans = nullptr;          // read_scans() of the case
   const ResponseModes* modes = nullptr;  // of the design
 };
 

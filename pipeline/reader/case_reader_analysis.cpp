@@ -63,8 +63,7 @@ void read_analysis_table(CaseContext& context, const toml::table& root,
       table->integer_within("frequencies", 0, most).value_or(0);
   analysis.buckling = table->integer_within("buckling", 0, most);
   read_solver(context, *table, analysis);
-  analysis.supports_of =
-      index_of_held(context, *table, result, "supports_of");
+  analysis.supports_of = index_of_held(context, *table, result, "supports_of");
   if (result.load_cases.empty() && context.problems.empty()) {
     context.problems.add(table->line(),
                          "analysis needs a load case: its supports and loads");

@@ -250,7 +250,14 @@ export interface Result {
   norm_peaks?: Record<string, NormPeak>;
   buckling?: Record<
     string,
-    { factors?: (number | null)[]; none_below?: number | null }
+    {
+      verdict?: string;
+      above?: number | null;
+      factors?: (number | null)[];
+      errors?: (number | null)[];
+      stress?: { matters: boolean }[];
+      none_below?: number | null;
+    }
   >;
   natural_frequencies?: { values: number[]; supports_of?: string };
   sweep?: {

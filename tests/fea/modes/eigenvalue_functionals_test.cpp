@@ -130,8 +130,7 @@ Column column(int order, bool sliding) {
   pushed.name = "push";
   pushed.supports = {parts::hold("x0")};
   if (sliding) {
-    pushed.supports = {
-        {.surface = "x0", .kind = loads::SupportKind::Normal}};
+    pushed.supports = {{.surface = "x0", .kind = loads::SupportKind::Normal}};
     pushed.springs = {{.surface = "x0", .components = {0.0, 40.0, 40.0}},
                       {.surface = "y0", .components = {0.1, 0.3, 0.2}}};
   }
@@ -182,8 +181,7 @@ TEST_P(Eigenvalue, BucklingFactorsHaveExactDerivatives) {
   for (int k = 0; k < 2; ++k) {
     ASSERT_GT(modes.factors[k + 1], (1.0 + kSimple) * modes.factors[k]);
     const VectorX dx = wave(part_.mesh, 0.4);
-    const VectorX gradient =
-        total_by_nodes(part_, VectorX::Unit(3, k), modes);
+    const VectorX gradient = total_by_nodes(part_, VectorX::Unit(3, k), modes);
     expect_derivative({.exact = gradient.dot(dx),
                        .scale = gradient.cwiseProduct(dx).lpNorm<1>(),
                        .tolerance = kTotal},
@@ -199,24 +197,21 @@ TEST_P(Eigenvalue, FrequenciesHaveExactDerivatives) {
   const modes::NaturalModes modes = part_.vibration(3);
   ASSERT_FALSE(modes.failure) << modes.failure->message;
   for (int k = 0; k < 2; ++k) {
-    ASSERT_GT(modes.frequencies[k + 1],
-              (1.0 + kSimple) * modes.frequencies[k]);
+    ASSERT_GT(modes.frequencies[k + 1], (1.0 + kSimple) * modes.frequencies[k]);
     const VectorX weights = VectorX::Unit(3, k);
     const modes::ModeFunctional by =
-        modes::frequency_functional(part_.mesh, part_.materials,
-                                    part_.cases[0],
+        modes::frequency_functional(part_.mesh, part_.materials, part_.cases[0],
                                     {modes.frequencies, modes.shapes, weights});
     EXPECT_NEAR(by.value, modes.frequencies[k], 1e-12 * by.value);
     const VectorX dx = wave(part_.mesh, 0.4);
-    expect_derivative(
-        {.exact = flat(by.by_nodes).dot(dx),
-         .scale = flat(by.by_nodes).cwiseProduct(dx).lpNorm<1>(),
-         .tolerance = kTotal},
-        [&](double t) {
-          Column there = part_;
-          there.mesh = moved(part_.mesh, dx, t);
-          return there.vibration(3).frequencies[k];
-        });
+    expect_derivative({.exact = flat(by.by_nodes).dot(dx),
+                       .scale = flat(by.by_nodes).cwiseProduct(dx).lpNorm<1>(),
+                       .tolerance = kTotal},
+                      [&](double t) {
+                        Column there = part_;
+                        there.mesh = moved(part_.mesh, dx, t);
+                        return there.vibration(3).frequencies[k];
+                      });
     for (int region = 0; region < 2; ++region) {
       const auto with = [&](double modulus, double density) {
         Column there = part_;
@@ -245,10 +240,9 @@ TEST_P(ModeWorks, FactorsAreByModuliWhatTheirUnitsSay) {
   part.cases[0].temperature.reset();
   const modes::BucklingModes modes = part.buckling(2);
   const VectorX u = part.solution();
-  const element::Functional by =
-      modes::factor_functional(part.mesh, part.materials, part.cases[0], u,
-                               {modes.factors, modes.shapes,
-                                VectorX::Unit(2, 0)});
+  const element::Functional by = modes::factor_functional(
+      part.mesh, part.materials, part.cases[0], u,
+      {modes.factors, modes.shapes, VectorX::Unit(2, 0)});
   const double factor = modes.factors[0];
   const double by_all = by.by_modulus[0] * part.materials[0].youngs_modulus +
                         by.by_modulus[1] * part.materials[1].youngs_modulus;
@@ -259,24 +253,23 @@ TEST_P(ModeWorks, FactorsAreByModuliWhatTheirUnitsSay) {
 
 INSTANTIATE_TEST_SUITE_P(Orders, ModeWorks, testing::Values(1, 2));
 
-INSTANTIATE_TEST_SUITE_P(
-    Kinds, Eigenvalue,
-    testing::Values(Kind{1, false}, Kind{2, false}, Kind{1, true},
-                    Kind{2, true}),
-    [](const testing::TestParamInfo<Kind>& kind) {
-      return std::string(kind.param.order == 1 ? "Four" : "Ten") +
-             (kind.param.sliding ? "Sliding" : "Held");
-    });
+INSTANTIATE_TEST_SUITE_P(Kinds, Eigenvalue,
+                         testing::Values(Kind{1, false}, Kind{2, false},
+                                         Kind{1, true}, Kind{2, true}),
+                         [](const testing::TestParamInfo<Kind>& kind) {
+                           return std::string(kind.param.order == 1 ? "Four"
+                                                                    : "Ten") +
+                                  (kind.param.sliding ? "Sliding" : "Held");
+                         });
 
 TEST(FreeBody, FrequenciesHaveExactDerivatives) {
   Column part = column(2, false);
   part.cases = {loads::LoadCase{.name = "free"}};
   const modes::NaturalModes modes = part.vibration(2);
   ASSERT_EQ(modes.rigid_motions, 6);
-  const modes::ModeFunctional by =
-      modes::frequency_functional(part.mesh, part.materials, part.cases[0],
-                                  {modes.frequencies, modes.shapes,
-                                   VectorX::Unit(2, 0)});
+  const modes::ModeFunctional by = modes::frequency_functional(
+      part.mesh, part.materials, part.cases[0],
+      {modes.frequencies, modes.shapes, VectorX::Unit(2, 0)});
   const VectorX dx = wave(part.mesh, 0.4);
   expect_derivative({.exact = flat(by.by_nodes).dot(dx),
                      .scale = flat(by.by_nodes).cwiseProduct(dx).lpNorm<1>(),
@@ -361,20 +354,21 @@ TEST_F(RepeatedModes, AnyBasisGivesTheSameDerivatives) {
   const auto gradient = [&](double angle) -> VectorX {
     modes.shapes[0] = std::cos(angle) * a + std::sin(angle) * b;
     modes.shapes[1] = -std::sin(angle) * a + std::cos(angle) * b;
-    return flat(modes::factor_functional(
-                    part_.mesh, part_.materials, part_.cases[0], u,
-                    {modes.factors, modes.shapes, bound.by_value})
-                    .by_nodes);
+    return flat(
+        modes::factor_functional(part_.mesh, part_.materials, part_.cases[0], u,
+                                 {modes.factors, modes.shapes, bound.by_value})
+            .by_nodes);
   };
   const VectorX here = gradient(0.0);
   EXPECT_LE((gradient(0.7) - here).norm(), 1e-9 * here.norm());
   // The single mode's depends on it.
   modes.shapes = {a, (a + b) / std::sqrt(2.0)};
   const auto single = [&](int k) {
-    return modes::factor_functional(part_.mesh, part_.materials,
-                                    part_.cases[0], u,
+    return modes::factor_functional(part_.mesh, part_.materials, part_.cases[0],
+                                    u,
                                     {{modes.factors[0], modes.factors[1]},
-                                     modes.shapes, VectorX::Unit(2, k)})
+                                     modes.shapes,
+                                     VectorX::Unit(2, k)})
         .by_nodes;
   };
   const Points first = single(0);
@@ -456,9 +450,9 @@ TEST(ModeStressOf, AColumnIsThatOfItsSection) {
   Column part = square_column();
   part.materials[0].yield_strength = 0.5;
   const modes::BucklingModes modes = part.buckling(1);
-  const modes::ModeStress stress = modes::mode_stress(
-      part.mesh, part.materials, part.cases[0], part.solution(),
-      modes.shapes[0]);
+  const modes::ModeStress stress =
+      modes::mode_stress(part.mesh, part.materials, part.cases[0],
+                         part.solution(), modes.shapes[0]);
   // The clamp's edges count a little.
   EXPECT_NEAR(stress.von_mises, 0.2, 0.02 * 0.2);
   EXPECT_NEAR(stress.of_yield, stress.von_mises / 0.5, 1e-12);
