@@ -165,7 +165,7 @@ Differentiated differentiated(const std::vector<std::string>& responses) {
   forward::EvaluationFields fields;
   forward::AdjointState adjoint;
   const forward::Evaluation here = model.evaluate(
-      case_data::initial_design(input) + Eigen::Vector2d(50, 0.3), &fields,
+      case_data::initial_design(input) + Eigen::Vector2d(0.3, 50.0), &fields,
       &adjoint);
   EXPECT_FALSE(here.failure);
   std::vector<int> wanted;
@@ -190,7 +190,7 @@ TEST(DesignGradient, IsExactForEveryResponseAtTheFrozenDesign) {
 
 TEST(DesignGradient, OfEigenvaluesIsExact) {
   expect_exact(eigenvalues(), VectorX::Zero(2));
-  expect_exact(eigenvalues(), Eigen::Vector2d(50.0, 0.3));
+  expect_exact(eigenvalues(), Eigen::Vector2d(0.3, 50.0));
 }
 
 // One for the stress's dependence on displacements, whatever the cluster.
