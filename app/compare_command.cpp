@@ -18,8 +18,8 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/json.h"
+#include "pipeline/files/part_file.h"
 #include "pipeline/files/text_table.h"
-#include "pipeline/forward/part_file.h"
 #include "pipeline/forward/stress_figures.h"
 #include "pipeline/results/imported_part.h"
 #include "pipeline/results/part_comparison.h"
@@ -160,13 +160,13 @@ std::vector<results::PartFigures> load_parts(const CompareArguments& arguments,
   const fs::path folder = arguments.out;
   const std::vector<FaceArgument> faces = face_arguments(arguments);
   std::vector<results::PartFigures> parts;
-  if (forward::is_part_file(arguments.parts.front())) {
+  if (files::is_part_file(arguments.parts.front())) {
     throw InvalidInput(
         "the first part must be a run: a file takes material, supports and "
         "loads from it");
   }
   for (const std::string& part : arguments.parts) {
-    if (!forward::is_part_file(part)) {
+    if (!files::is_part_file(part)) {
       store::StudyStore::read(part);  // refused before the others are computed
     }
   }
@@ -180,7 +180,7 @@ std::vector<results::PartFigures> load_parts(const CompareArguments& arguments,
   keep_surface(first.input, first.fields, worst, folder, parts);
   for (std::size_t k = 1; k < arguments.parts.size(); ++k) {
     const fs::path path = arguments.parts[k];
-    if (forward::is_part_file(path)) {
+    if (files::is_part_file(path)) {
       forward::EvaluationFields fields;
       parts.push_back(results::imported_part_figures(
           path, first, names_for(faces, arguments.parts[k]), &monitor,

@@ -82,17 +82,18 @@ FrequencyFigures frequencies_of(const case_data::AnalysisEntry& analysis,
 }
 
 /// The factors of a load case, and the stress that each is of.
-BucklingFigures buckling_of(const EvaluationFields& fields,
-                            const elastic::ElasticModel& model, std::size_t c,
-                            const modes::BucklingOptions& options) {
+modes::BucklingFigures buckling_of(const EvaluationFields& fields,
+                                   const elastic::ElasticModel& model,
+                                   std::size_t c,
+                                   const modes::BucklingOptions& options) {
   const std::vector<loads::LoadCase>& cases = fields.inputs.load_cases;
   const VectorX& u = fields.solution.displacements[c];
-  BucklingFigures figures{.load_case = cases[c].name,
-                          .modes = or_failure<modes::BucklingModes>([&] {
-                            return modes::buckling_modes(
-                                model, fields.mesh, cases, static_cast<int>(c),
-                                u, options);
-                          })};
+  modes::BucklingFigures figures{.load_case = cases[c].name,
+                                 .modes = or_failure<modes::BucklingModes>([&] {
+                                   return modes::buckling_modes(
+                                       model, fields.mesh, cases,
+                                       static_cast<int>(c), u, options);
+                                 })};
   for (const VectorX& shape : figures.modes.shapes) {
     figures.stresses.push_back(modes::mode_stress(
         fields.mesh, fields.inputs.materials, cases[c], u, shape));
@@ -124,7 +125,7 @@ EigenFigures eigen_figures(const case_data::Case& input,
   if (analysis.frequencies > 0) {
     figures.frequencies = frequencies_of(analysis, fields, model, monitor);
   }
-  for (BucklingFigures& b : figures.buckling) {
+  for (modes::BucklingFigures& b : figures.buckling) {
     const bool stable = !b.modes.factors.empty() && !matters(b, 0);
     if (!analysis.buckling && b.modes.failure && stable) {
       b.modes.failure.reset();
@@ -138,15 +139,15 @@ EigenFigures eigen_figures(const case_data::Case& input,
 bool deserve_errors(const case_data::Case& input, const EigenFigures& figures) {
   return input.analysis.frequencies > 0 ||
          std::any_of(figures.buckling.begin(), figures.buckling.end(),
-                     [](const BucklingFigures& b) {
+                     [](const modes::BucklingFigures& b) {
                        return factors_that_matter(b) > 0;
                      });
 }
 
 void add_eigen_json(const EigenFigures& figures, Json& json) {
   Json buckling = Json::object();
-  for (const BucklingFigures& b : figures.buckling) {
-    Json entry = {{"verdict", name_of(verdict_of(b))},
+  for (const modes::BucklingFigures& b : figures.buckling) {
+    Json entry = {{"verdict", modes::name_of(modes::verdict_of(b))},
                   {"above", safe_factor(b)},
                   {"factors", b.modes.factors},
                   {"residuals", b.modes.residuals}};
@@ -184,7 +185,7 @@ void add_eigen_json(const EigenFigures& figures, Json& json) {
 
 std::string eigen_text(const EigenFigures& figures) {
   std::string text;
-  for (const BucklingFigures& b : figures.buckling) {
+  for (const modes::BucklingFigures& b : figures.buckling) {
     text +=
         fmt::format("  buckling of '{}': {}\n", b.load_case, buckling_text(b));
   }
@@ -225,7 +226,7 @@ std::vector<ModeShape> mode_shapes(const case_data::Case& input,
   if (!input.analysis.buckling) {
     return shapes;
   }
-  for (const BucklingFigures& b : figures.buckling) {
+  for (const modes::BucklingFigures& b : figures.buckling) {
     for (std::size_t k = 0; k < b.modes.shapes.size(); ++k) {
       shapes.push_back({fmt::format("buckling_{}_{}", b.load_case, k + 1),
                         fmt::format("factor {:.8g}", b.modes.factors[k]),

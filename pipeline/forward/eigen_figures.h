@@ -7,8 +7,8 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "fea/modes/buckling_verdict.h"
 #include "fea/modes/modes.h"
-#include "pipeline/forward/buckling_verdict.h"
 #include "pipeline/forward/forward_model.h"
 
 namespace meniscus::forward {
@@ -20,7 +20,7 @@ struct FrequencyFigures {
 };
 
 struct EigenFigures {
-  std::vector<BucklingFigures> buckling;  // per load case; may be empty
+  std::vector<modes::BucklingFigures> buckling;  // per load case; may be empty
   std::optional<FrequencyFigures> frequencies;
   std::string remark;  // why nothing was computed, unasked; or empty
   double seconds = 0.0;

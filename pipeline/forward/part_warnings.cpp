@@ -174,7 +174,7 @@ std::vector<std::string> factor_warnings(const EvaluationFields& fields) {
     sum.weights.maxCoeff(&most);
     const auto mode = static_cast<std::size_t>(most);
     const auto c = static_cast<std::size_t>(found.load_case);
-    BucklingFigures figures;
+    modes::BucklingFigures figures;
     figures.modes.factors = {found.values[mode]};
     figures.stresses = {modes::mode_stress(
         fields.mesh, fields.inputs.materials, fields.inputs.load_cases[c],
@@ -192,7 +192,7 @@ std::vector<std::string> factor_warnings(const EvaluationFields& fields) {
 
 std::vector<std::string> eigen_warnings(const EigenFigures& figures) {
   std::vector<std::string> warnings;
-  for (const BucklingFigures& b : figures.buckling) {
+  for (const modes::BucklingFigures& b : figures.buckling) {
     const std::vector<std::string> own = buckling_warnings(b);
     warnings.insert(warnings.end(), own.begin(), own.end());
   }

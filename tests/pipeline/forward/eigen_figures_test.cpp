@@ -116,50 +116,50 @@ TEST(EigenFigures, WarnOfAFactorBelowOne) {
 }
 
 /// The pushed bar, with a yield strength and an error, 0.1 of the factor.
-forward::BucklingFigures judged(double push, double yield, double error) {
+modes::BucklingFigures judged(double push, double yield, double error) {
   Bar bar(push);
   bar.fields.inputs.materials[0].yield_strength = yield;
-  forward::BucklingFigures figures = bar.figures({.buckling = 1}).buckling[0];
+  modes::BucklingFigures figures = bar.figures({.buckling = 1}).buckling[0];
   figures.errors = {error * figures.modes.factors.at(0)};
   return figures;
 }
 
 TEST(BucklingVerdict, IsOfFactorErrorAndYield) {
-  using forward::BucklingVerdict;
+  using modes::BucklingVerdict;
   // Euler's stress of the bar: pi^2 E h^2 / (48 L^2), 276 MPa.
   constexpr double kCritical = 276.0;
-  const forward::BucklingFigures stands = judged(100.0, 300.0, 0.1);
+  const modes::BucklingFigures stands = judged(100.0, 300.0, 0.1);
   EXPECT_EQ(verdict_of(stands), BucklingVerdict::Stands);
   EXPECT_NEAR(slenderness(stands, 0), std::sqrt(300.0 / kCritical), 0.05);
   EXPECT_NEAR(safe_factor(stands), 0.9 * stands.modes.factors[0], 1e-9);
   EXPECT_THAT(buckling_text(stands),
               AllOf(HasSubstr(" +- "), HasSubstr(" x the loads, before it")));
   // Where yield is a hundredth of it, nothing buckles that matters.
-  const forward::BucklingFigures stocky = judged(100.0, kCritical / 100.0, 0.1);
+  const modes::BucklingFigures stocky = judged(100.0, kCritical / 100.0, 0.1);
   EXPECT_EQ(verdict_of(stocky), BucklingVerdict::BeyondYield);
   EXPECT_THAT(buckling_text(stocky),
               testing::MatchesRegex("none that matters below 2\\.[0-9] x the "
                                     "loads, where its stress is [0-9.e+]+ "
                                     "times yield"));
   EXPECT_EQ(safe_factor(stocky), stocky.modes.factors[0]);
-  EXPECT_THAT(forward::buckling_warnings(stocky), IsEmpty());
+  EXPECT_THAT(modes::buckling_warnings(stocky), IsEmpty());
 }
 
 TEST(BucklingVerdict, SaysHowSureItIs) {
-  using forward::BucklingVerdict;
+  using modes::BucklingVerdict;
   const double critical = 100.0 * judged(100.0, 300.0, 0.0).modes.factors[0];
   EXPECT_EQ(verdict_of(judged(critical / 0.8, 300.0, 0.1)),
             BucklingVerdict::Buckles);
-  const forward::BucklingFigures near = judged(critical / 1.05, 300.0, 0.1);
+  const modes::BucklingFigures near = judged(critical / 1.05, 300.0, 0.1);
   EXPECT_EQ(verdict_of(near), BucklingVerdict::Uncertain);
-  EXPECT_THAT(forward::buckling_warnings(near),
+  EXPECT_THAT(modes::buckling_warnings(near),
               ElementsAre(HasSubstr("within its error of 1")));
-  const forward::BucklingFigures apart = judged(critical / 9.0, 300.0, 0.7);
+  const modes::BucklingFigures apart = judged(critical / 9.0, 300.0, 0.7);
   EXPECT_EQ(verdict_of(apart), BucklingVerdict::Stands);
   EXPECT_THAT(buckling_text(apart),
               HasSubstr("no certain factor: 9 x the loads on this mesh, no "
                         "less than 2.6 on others"));
-  forward::BucklingFigures alone = judged(critical / 9.0, 300.0, 0.0);
+  modes::BucklingFigures alone = judged(critical / 9.0, 300.0, 0.0);
   alone.errors.clear();
   EXPECT_EQ(verdict_of(alone), BucklingVerdict::Uncertain);
   EXPECT_EQ(safe_factor(alone), 0.0);
@@ -167,7 +167,7 @@ TEST(BucklingVerdict, SaysHowSureItIs) {
 
 TEST(BucklingVerdict, WithoutAYieldStrengthIsOfTheStrain) {
   Bar bar(100.0);
-  forward::BucklingFigures figures = bar.figures({.buckling = 1}).buckling[0];
+  modes::BucklingFigures figures = bar.figures({.buckling = 1}).buckling[0];
   EXPECT_TRUE(std::isnan(slenderness(figures, 0)));
   EXPECT_TRUE(matters(figures, 0));
   figures.stresses[0].strain = 0.11 / figures.modes.factors[0];

@@ -1,11 +1,11 @@
-#include "pipeline/forward/buckling_verdict.h"
+#include "fea/modes/buckling_verdict.h"
 
 #include <cmath>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-namespace meniscus::forward {
+namespace meniscus::modes {
 
 namespace {
 
@@ -25,7 +25,7 @@ std::string rounded_down(double value) {
 
 /// "where the stress is 61 times yield" at a factor.
 std::string far_beyond(const BucklingFigures& figures, std::size_t factor) {
-  const modes::ModeStress& stress = figures.stresses[factor];
+  const ModeStress& stress = figures.stresses[factor];
   const double times = figures.modes.factors[factor];
   return std::isfinite(stress.of_yield)
              ? fmt::format("where its stress is {} times yield",
@@ -195,4 +195,4 @@ std::vector<std::string> buckling_warnings(const BucklingFigures& figures) {
   return warnings;
 }
 
-}  // namespace meniscus::forward
+}  // namespace meniscus::modes

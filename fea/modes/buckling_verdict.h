@@ -9,14 +9,14 @@
 #include "fea/modes/buckling.h"
 #include "fea/modes/mode_shapes.h"
 
-namespace meniscus::forward {
+namespace meniscus::modes {
 
 /// Of one load case.
 struct BucklingFigures {
   std::string load_case;
-  modes::BucklingModes modes;  // as many as the case asks for, or the first
+  BucklingModes modes;  // as many as the case asks for, or the first
   /// Per factor: of the loads as they are, where its mode is pushed on.
-  std::vector<modes::ModeStress> stresses;
+  std::vector<ModeStress> stresses;
   /// Per factor, the mesh's own error; empty: not estimated.
   std::vector<double> errors;
   /// Unasked, and without convergence in a search as long as a solve.
@@ -66,4 +66,4 @@ std::string buckling_text(const BucklingFigures& figures);
 /// error of it, and factors that could not be found.
 std::vector<std::string> buckling_warnings(const BucklingFigures& figures);
 
-}  // namespace meniscus::forward
+}  // namespace meniscus::modes
