@@ -137,7 +137,8 @@ EigenFigures eigen_figures(const case_data::Case& input,
 }
 
 bool deserve_errors(const case_data::Case& input, const EigenFigures& figures) {
-  return input.analysis.frequencies > 0 ||
+  return input.analysis.buckling.value_or(0) > 0 ||
+         input.analysis.frequencies > 0 ||
          std::any_of(figures.buckling.begin(), figures.buckling.end(),
                      [](const modes::BucklingFigures& b) {
                        return factors_that_matter(b) > 0;
