@@ -35,8 +35,8 @@ EigenFigures eigen_figures(const case_data::Case& input,
                            const elastic::ElasticModel& model,
                            Monitor* monitor = nullptr);
 
-/// Whether other meshes have something to say: of frequencies, and of factors
-/// that matter.
+/// Whether other meshes have something to say: of what was asked for, and of
+/// factors that matter.
 bool deserve_errors(const case_data::Case& input, const EigenFigures& figures);
 
 /// Adds "buckling" and "natural_frequencies" to result.json (docs/results.md).
