@@ -20,8 +20,8 @@
 #include "core/error.h"
 #include "core/json.h"
 #include "pipeline/decks/compared_deck.h"
+#include "pipeline/files/part_file.h"
 #include "pipeline/files/text_table.h"
-#include "pipeline/forward/part_file.h"
 #include "pipeline/forward/stress_figures.h"
 #include "pipeline/results/imported_part.h"
 #include "pipeline/results/part_comparison.h"
@@ -162,7 +162,7 @@ std::vector<results::PartFigures> load_parts(const CompareArguments& arguments,
   const fs::path folder = arguments.out;
   const std::vector<FaceArgument> faces = face_arguments(arguments);
   std::vector<results::PartFigures> parts;
-  if (forward::is_part_file(arguments.parts.front()) ||
+  if (files::is_part_file(arguments.parts.front()) ||
       decks::is_deck(arguments.parts.front())) {
     throw InvalidInput(
         "the first part must be a run: a file takes material, supports and "
@@ -173,7 +173,7 @@ std::vector<results::PartFigures> load_parts(const CompareArguments& arguments,
        arguments.parts) {        // refused before the others
     if (decks::is_deck(part)) {  // are computed
       read.insert_or_assign(part, decks::read_deck_part(part));
-    } else if (!forward::is_part_file(part)) {
+    } else if (!files::is_part_file(part)) {
       store::StudyStore::read(part);
     }
   }
@@ -187,7 +187,7 @@ std::vector<results::PartFigures> load_parts(const CompareArguments& arguments,
   keep_surface(first.input, first.fields, worst, folder, parts);
   for (std::size_t k = 1; k < arguments.parts.size(); ++k) {
     const fs::path path = arguments.parts[k];
-    if (forward::is_part_file(path)) {
+    if (files::is_part_file(path)) {
       forward::EvaluationFields fields;
       parts.push_back(results::imported_part_figures(
           path, first, names_for(faces, arguments.parts[k]), &monitor,

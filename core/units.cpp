@@ -48,6 +48,7 @@ constexpr std::array<DimensionRow, 16> kDimensions = {{
     {Dimension::Inertia,
      "moment of inertia",
      {.length = 1, .force = 1, .time = 2}},
+    {Dimension::Frequency, "frequency", {.time = -1}},
     {Dimension::Foundation, "stiffness per area", {.length = -3, .force = 1}},
 }};
 const DimensionRow& row_of(Dimension dimension) {
@@ -350,6 +351,8 @@ std::string UnitSystem::unit_of(Dimension dimension) const {
       return "rad/s";
     case Dimension::Inertia:
       return mass + " " + length + "2";
+    case Dimension::Frequency:
+      return "Hz";
     case Dimension::Foundation:
       return force + "/" + length + "3";
   }

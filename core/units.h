@@ -23,6 +23,7 @@ enum class Dimension {
   Acceleration,  // also force per mass
   Rate,          // angle per time
   Inertia,       // mass times length^2
+  Frequency,     // cycles per time
   Foundation     // force per length and area
 };
 const char* name_of(Dimension dimension);

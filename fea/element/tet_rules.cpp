@@ -60,6 +60,16 @@ TetRule<Nodes> make_degree_five_rule() {
   return rule;
 }
 
+/// Ten-node elements' stiffness rule is of degree two.
+TetRule<4> make_mass_rule() {
+  TetRule<4> rule;
+  for (int q = 0; q < kTetPoints<10>; ++q) {
+    rule.points.push_back(
+        rule_point_at<4>(rule_point<10>(q), kReferenceVolume / kTetPoints<10>));
+  }
+  return rule;
+}
+
 }  // namespace
 
 template <int Nodes>
@@ -85,6 +95,16 @@ const TetRule<Nodes>& moment_rule() {
   return Nodes == 4 ? stiffness_rule<Nodes>() : fine_rule<Nodes>();
 }
 
+template <int Nodes>
+const TetRule<Nodes>& mass_rule() {
+  if constexpr (Nodes == 4) {
+    static const TetRule<4> kRule = make_mass_rule();
+    return kRule;
+  } else {
+    return moment_rule<Nodes>();
+  }
+}
+
 template const TetRule<4>& stiffness_rule<4>();
 template const TetRule<10>& stiffness_rule<10>();
 template const TetRule<4>& volume_rule<4>();
@@ -93,5 +113,7 @@ template const TetRule<4>& fine_rule<4>();
 template const TetRule<10>& fine_rule<10>();
 template const TetRule<4>& moment_rule<4>();
 template const TetRule<10>& moment_rule<10>();
+template const TetRule<4>& mass_rule<4>();
+template const TetRule<10>& mass_rule<10>();
 
 }  // namespace meniscus::element

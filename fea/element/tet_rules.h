@@ -34,4 +34,9 @@ const TetRule<Nodes>& moment_rule();
 template <int Nodes>
 const TetRule<Nodes>& fine_rule();
 
+/// Exact for products of two shape functions on straight elements, as the
+/// consistent mass needs; of degree five on curved ones.
+template <int Nodes>
+const TetRule<Nodes>& mass_rule();
+
 }  // namespace meniscus::element

@@ -90,14 +90,15 @@ BucklingModes buckling_modes(const elastic::ElasticModel& model,
   const loads::LoadCase& loads = load_cases[load_case];
   const solver::NodalMatrix A =
       weakening(mesh, op, loads, displacement, options.sense);
-  const EigenPairs pairs =
-      eigenpairs_of(op, A, solver::Columns(),
-                    {.count = options.count,
-                     .tolerance = options.tolerance,
-                     .floor = 1.0 / options.largest,
-                     .guards = options.guards,
-                     .max_iterations = options.max_iterations,
-                     .monitor = options.monitor});
+  const EigenPairs pairs = eigenpairs_of(
+      op, A, start_columns(*op.order, solver::Columns(), options.start),
+      {.count = options.count,
+       .tolerance = options.tolerance,
+       .floor = 1.0 / options.largest,
+       .guards = options.guards,
+       .max_iterations = options.max_iterations,
+       .monitor = options.monitor},
+      options.may_factor);
   BucklingModes modes = judged(pairs, options, loads.name);
   for (std::size_t k = 0; k < modes.factors.size(); ++k) {
     const VectorX x = equations::to_mesh(

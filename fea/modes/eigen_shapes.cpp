@@ -7,20 +7,59 @@
 
 namespace meniscus::modes {
 
+namespace {
+
+/// Iterations after which a factor is quicker.
+constexpr int kSlow = 60;
+
+}  // namespace
+
 EigenPairs eigenpairs_of(const equations::ElasticOperator& op,
                          const solver::NodalMatrix& A,
                          const solver::Columns& start,
-                         const EigenOptions& options) {
+                         const EigenOptions& options, bool may_factor) {
   const solver::BlockPattern& pattern = op.table->pattern;
+  const bool small = 3 * pattern.nodes <= solver::kSecondChance;
+  EigenOptions first = options;
+  if (may_factor && small) {
+    first.max_iterations = std::min(options.max_iterations, kSlow);
+  }
   EigenPairs pairs = largest_eigenpairs(
-      {pattern, op.K, A, *op.preconditioner, op.freedom}, start, options);
-  if (pairs.end == EigenEnd::NotPositive &&
-      3 * pattern.nodes <= solver::kSecondChance) {
+      {pattern, op.K, A, *op.preconditioner, op.freedom}, start, first);
+  const bool slow = may_factor && pairs.end == EigenEnd::TooManyIterations;
+  if (small && (slow || pairs.end == EigenEnd::NotPositive)) {
     const auto factor = solver::make_direct(pattern, op.K, op.freedom);
-    pairs = largest_eigenpairs({pattern, op.K, A, *factor, op.freedom}, start,
-                               options);
+    pairs = largest_eigenpairs({pattern, op.K, A, *factor, op.freedom},
+                               slow ? pairs.x : start, options);
   }
   return pairs;
+}
+
+solver::Columns start_columns(const solver::NodeOrder& order,
+                              const solver::Columns& own,
+                              const std::vector<VectorX>* shapes) {
+  if (shapes == nullptr || shapes->empty()) {
+    return own;
+  }
+  const auto rows = static_cast<Eigen::Index>(3 * order.to_mesh.size());
+  const Eigen::Index first = own.cols();
+  solver::Columns start(rows,
+                        first + static_cast<Eigen::Index>(shapes->size()));
+  if (first > 0) {
+    start.leftCols(first) = own;
+  }
+  for (std::size_t k = 0; k < shapes->size(); ++k) {
+    const VectorX& shape = (*shapes)[k];
+    if (shape.size() != rows) {
+      throw InvalidInput(
+          fmt::format("eigenvalues: a shape to begin with has {} numbers for "
+                      "{} nodes",
+                      shape.size(), order.to_mesh.size()));
+    }
+    start.col(first + static_cast<Eigen::Index>(k)) =
+        equations::to_solver(order, shape);
+  }
+  return start;
 }
 
 std::optional<Failure> why_not(const EigenPairs& pairs,

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/error.h"
 #include "fea/equations/elastic_operator.h"
@@ -12,11 +13,18 @@ namespace meniscus::modes {
 
 /// largest_eigenpairs() of A against the operator's K; once more with a factor
 /// in double precision where its preconditioner is not positive definite
-/// (supports that hardly hold) and the part is not large.
+/// (supports that hardly hold) and the part is not large. With `may_factor`
+/// also where the search is slow, as far from the design that the
+/// preconditioner is of.
 EigenPairs eigenpairs_of(const equations::ElasticOperator& op,
                          const solver::NodalMatrix& A,
                          const solver::Columns& start,
-                         const EigenOptions& options);
+                         const EigenOptions& options, bool may_factor = false);
+
+/// `own` columns and after them `shapes` (mesh's numbering, may be null).
+solver::Columns start_columns(const solver::NodeOrder& order,
+                              const solver::Columns& own,
+                              const std::vector<VectorX>* shapes);
 
 /// Why there is no answer; nothing when the pairs converged.
 std::optional<Failure> why_not(const EigenPairs& pairs,

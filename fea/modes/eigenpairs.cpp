@@ -21,6 +21,9 @@ constexpr double kUnsettled = 2.0;
 
 /// Iterations in which an eigenvalue above the floor shows itself.
 constexpr int kEnoughToRise = 8;
+/// The least number after which vectors to begin with may be the answer: what
+/// they lack shows itself among the guards.
+constexpr int kEnoughToShow = 6;
 
 /// A fixed sequence of numbers in (-1, 1): splitmix64.
 double noise(std::uint64_t index) {
@@ -281,11 +284,13 @@ EigenPairs EigenSearch::run(const solver::Columns& start) {
   Monitor& monitor =
       options_.monitor != nullptr ? *options_.monitor : silent_monitor();
   begin(start);
+  const int least = start.cols() > 0 ? kEnoughToShow : 0;
   bool going = improve(m_);
   while (going && m_ > 0) {
     throw_if_stopped(monitor, "fea");
     measure();
-    if (end_ == EigenEnd::NotPositive || all_settled()) {
+    if (end_ == EigenEnd::NotPositive ||
+        (all_settled() && (iterations_ >= least || w_ == 0))) {
       break;
     }
     if (iterations_ == options_.max_iterations) {

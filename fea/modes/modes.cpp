@@ -61,12 +61,13 @@ NaturalModes solve(const TetMesh& mesh, const equations::ElasticOperator& op,
   check_modes(options);
   const solver::NodalMatrix M = solver::mass_matrix(
       *op.table, op.x, densities(mesh, op.materials), options.mass);
-  const EigenPairs pairs =
-      eigenpairs_of(op, M, shifted.start,
-                    {.count = options.count + shifted.rigid,
-                     .tolerance = options.tolerance,
-                     .max_iterations = options.max_iterations,
-                     .monitor = options.monitor});
+  const EigenPairs pairs = eigenpairs_of(
+      op, M, start_columns(*op.order, shifted.start, options.start),
+      {.count = options.count + shifted.rigid,
+       .tolerance = options.tolerance,
+       .max_iterations = options.max_iterations,
+       .monitor = options.monitor},
+      options.may_factor);
   NaturalModes modes;
   modes.failure = why_not(pairs, "natural frequencies");
   modes.iterations = pairs.iterations;

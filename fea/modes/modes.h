@@ -21,6 +21,9 @@ struct ModeOptions {
   Monitor* monitor = nullptr;  // not owned
   /// Of the design, one per region, not owned; null: those of the model's base.
   const std::vector<element::Material>* materials = nullptr;
+  /// Shapes of another design of the same mesh to begin with, not owned.
+  const std::vector<VectorX>* start = nullptr;
+  bool may_factor = false;  // see eigenpairs_of()
 };
 
 struct NaturalModes {

@@ -209,17 +209,21 @@ VectorX bounds_of(const std::vector<FigureError>& errors) {
 
 void add_eigen_errors(MeshSequence& meshes) {
   auto& [fine, middle, coarse, finer] = meshes.eigen;
-  const auto factor = [](const forward::EigenFigures& figures, std::size_t k) {
-    return k < figures.buckling.size() &&
-                   !figures.buckling[k].modes.factors.empty()
-               ? figures.buckling[k].modes.factors.front()
-               : kNaN;
-  };
   for (std::size_t k = 0; k < fine.buckling.size(); ++k) {
-    fine.buckling[k].error = figure_error({factor(fine, k), factor(middle, k),
-                                           factor(coarse, k), factor(finer, k)},
-                                          FigureKind::Extreme)
-                                 .bound;
+    const auto factor = [k](const forward::EigenFigures& figures,
+                            std::size_t mode) {
+      return k < figures.buckling.size() &&
+                     mode < figures.buckling[k].modes.factors.size()
+                 ? figures.buckling[k].modes.factors[mode]
+                 : kNaN;
+    };
+    for (std::size_t m = 0; m < fine.buckling[k].modes.factors.size(); ++m) {
+      fine.buckling[k].errors.push_back(
+          figure_error({factor(fine, m), factor(middle, m), factor(coarse, m),
+                        factor(finer, m)},
+                       FigureKind::Extreme)
+              .bound);
+    }
   }
   if (!fine.frequencies) {
     return;

@@ -378,7 +378,7 @@ Dimension dimension_of(const Measure& measure) {
   for (int d = 1; d <= static_cast<int>(Dimension::Foundation); ++d) {
     const auto dimension = static_cast<Dimension>(d);
     if (measure.is_known() && dimension != Dimension::Angle &&
-        dimension != Dimension::Rate &&
+        dimension != Dimension::Rate && dimension != Dimension::Frequency &&
         powers_of(dimension) == measure.powers) {
       return dimension;
     }

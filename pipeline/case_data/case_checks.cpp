@@ -186,6 +186,14 @@ void check_held_loads(const Case& input, const EvaluatedCase& inputs,
   }
 }
 
+bool asks_for_frequencies(const Case& input) {
+  return input.analysis.frequencies > 0 ||
+         std::any_of(input.responses.begin(), input.responses.end(),
+                     [](const ResponseEntry& response) {
+                       return response.kind == ResponseKind::Frequency;
+                     });
+}
+
 void check_loads(const Case& input, const EvaluatedCase& inputs,
                  CaseProblems& problems) {
   for (std::size_t k = 0; k < inputs.load_cases.size(); ++k) {
@@ -225,7 +233,7 @@ void check_loads(const Case& input, const EvaluatedCase& inputs,
                    fmt::format("materials.{}.density is 0, but load case '{}' "
                                "has gravity or spin; give its mass per volume",
                                entry.name, weighs->name));
-    } else if (input.analysis.frequencies > 0) {
+    } else if (asks_for_frequencies(input)) {
       problems.add(entry.density.line,
                    fmt::format("materials.{}.density is 0, but natural "
                                "frequencies are asked for; give its mass per "

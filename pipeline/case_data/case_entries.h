@@ -242,7 +242,9 @@ struct AnalysisEntry {
   int processes = 2;  // of Distributed
   // Eigenvalues of the best design:
   static constexpr int kFree = -1;  // not held at all
-  int frequencies = 0;              // lowest natural ones
+  /// More at once would take more memory than the part's own solve.
+  static constexpr int kMostModes = 50;
+  int frequencies = 0;  // lowest natural ones
   int supports_of = 0;  // held as in this load case: index, or kFree
   /// Smallest factors per load case; without it one, roughly; 0: none.
   std::optional<int> buckling;
@@ -254,6 +256,8 @@ enum class ResponseKind {
   Rotation,
   Compliance,
   StrainEnergy,
+  BucklingFactor,
+  Frequency,
   Mass,
   Volume,
   CentreOfMass,
@@ -294,8 +298,8 @@ struct ResponseEntry {
   std::string surface;
   QuantityVector direction;             // an axis for Rotation
   std::optional<QuantityVector> point;  // on the axis of Inertia
-  int load_case = 0;                    // index
-  std::vector<int> load_cases;          // of Fatigue the two: indices
+  int load_case = 0;            // index; of Frequency also AnalysisEntry::kFree
+  std::vector<int> load_cases;  // of Fatigue the two: indices
   std::optional<PlaceQuantity> weight;
   double power = 8.0;
   double sharpness = 50.0;
@@ -318,6 +322,10 @@ struct ResponseEntry {
   std::vector<std::string> base;  // of Overhang: surfaces on the build plate
   std::vector<int> parts;         // of Envelope: indices of responses above
   bool least = false;             // of Envelope: the smallest of them
+  /// Of BucklingFactor and Frequency: which mode, from 1; and the width of the
+  /// cluster that a bound is over, 0: of that mode alone.
+  int number = 1;
+  double cluster = 0.0;
   /// Of Expression: over the case's names, then the responses above it; of
   /// Envelope only its measure.
   Quantity value;

@@ -14,6 +14,22 @@ namespace meniscus::forward {
 
 namespace {
 
+/// As many as the responses take.
+std::optional<Failure> find_modes(const FrozenPart& part,
+                                  StagedDesign& staged) {
+  const StageMeter meter;
+  ResponseModes& modes = staged.fields.response_modes;
+  modes = find_response_modes({.input = part.input,
+                               .inputs = staged.fields.inputs,
+                               .mesh = staged.fields.mesh,
+                               .solution = staged.fields.solution,
+                               .model = *part.elasticity,
+                               .base = &part.base_modes,
+                               .monitor = part.monitor});
+  meter.add_to(staged.evaluation.seconds.fea, staged.evaluation.operations.fea);
+  return modes.failure;
+}
+
 Failure not_a_number(const case_data::Case& input, const VectorX& responses) {
   Eigen::Index worst = 0;
   while (std::isfinite(responses[worst])) {
@@ -98,10 +114,15 @@ bool solve_elasticity(const FrozenPart& part, KeepStiffness keep,
 bool compute_responses(const FrozenPart& part, StagedDesign& staged) {
   Evaluation& result = staged.evaluation;
   EvaluationFields& fields = staged.fields;
+  result.failure = find_modes(part, staged);
+  if (result.failure) {
+    return false;
+  }
   try {
     result.responses =
-        respond(part.input, part.context(fields.inputs, staged.adjoint.film,
-                                         fields.mesh, fields.solution));
+        respond(part.input,
+                part.context(fields.inputs, staged.adjoint.film, fields.mesh,
+                             fields.solution, fields.response_modes));
   } catch (const InvalidInput& error) {  // an expression of place
     result.failure = Failure{FailureKind::NotANumber, error.what()};
     return false;

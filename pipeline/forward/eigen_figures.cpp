@@ -21,8 +21,6 @@ constexpr double kLargestOfInterest = 1e3;
 // As many steps as the solve took, so that it costs about as much, within:
 constexpr int kLeastSteps = 40;
 constexpr int kMostSteps = 150;
-// One that came out above this may be far from converged and needs no warning.
-constexpr double kSafelyStable = 10.0;
 
 /// Where the matrix is not in one process.
 bool left_out(const case_data::AnalysisEntry& analysis) {
@@ -83,23 +81,24 @@ FrequencyFigures frequencies_of(const case_data::AnalysisEntry& analysis,
           })};
 }
 
-std::string buckling_line(const BucklingFigures& b) {
-  const modes::BucklingModes& modes = b.modes;
-  std::string text = fmt::format("  buckling of '{}': ", b.load_case);
-  if (!modes.factors.empty()) {
-    std::vector<std::string> factors;
-    for (const double factor : modes.factors) {
-      factors.push_back(fmt::format("{:.4g}", factor));
-    }
-    if (std::isfinite(b.error)) {
-      factors.front() += fmt::format(" +- {:.2g}", b.error);
-    }
-    text += fmt::format("{}{} x the loads", b.roughly ? "about " : "",
-                        fmt::join(factors, ", "));
-  } else if (!modes.failure) {
-    text += fmt::format("none below {:.4g} x the loads", modes.none_below);
+/// The factors of a load case, and the stress that each is of.
+modes::BucklingFigures buckling_of(const EvaluationFields& fields,
+                                   const elastic::ElasticModel& model,
+                                   std::size_t c,
+                                   const modes::BucklingOptions& options) {
+  const std::vector<loads::LoadCase>& cases = fields.inputs.load_cases;
+  const VectorX& u = fields.solution.displacements[c];
+  modes::BucklingFigures figures{.load_case = cases[c].name,
+                                 .modes = or_failure<modes::BucklingModes>([&] {
+                                   return modes::buckling_modes(
+                                       model, fields.mesh, cases,
+                                       static_cast<int>(c), u, options);
+                                 })};
+  for (const VectorX& shape : figures.modes.shapes) {
+    figures.stresses.push_back(modes::mode_stress(
+        fields.mesh, fields.inputs.materials, cases[c], u, shape));
   }
-  return text + (modes.failure ? " (not converged)\n" : "\n");
+  return figures;
 }
 
 }  // namespace
@@ -116,12 +115,7 @@ EigenFigures eigen_figures(const case_data::Case& input,
       buckling_options(analysis, model.base_solution().report, monitor);
   options.materials = &fields.inputs.materials;
   for (std::size_t c = 0; c < cases.size() && options.count > 0; ++c) {
-    figures.buckling.push_back(
-        {cases[c].name, or_failure<modes::BucklingModes>([&] {
-           return modes::buckling_modes(
-               model, fields.mesh, cases, static_cast<int>(c),
-               fields.solution.displacements[c], options);
-         })});
+    figures.buckling.push_back(buckling_of(fields, model, c, options));
   }
   if (left_out(analysis) && !analysis.buckling) {
     figures.remark =
@@ -131,9 +125,8 @@ EigenFigures eigen_figures(const case_data::Case& input,
   if (analysis.frequencies > 0) {
     figures.frequencies = frequencies_of(analysis, fields, model, monitor);
   }
-  for (BucklingFigures& b : figures.buckling) {
-    const bool stable =
-        !b.modes.factors.empty() && b.modes.factors.front() > kSafelyStable;
+  for (modes::BucklingFigures& b : figures.buckling) {
+    const bool stable = !b.modes.factors.empty() && !matters(b, 0);
     if (!analysis.buckling && b.modes.failure && stable) {
       b.modes.failure.reset();
       b.roughly = true;
@@ -147,19 +140,30 @@ bool deserve_errors(const case_data::Case& input, const EigenFigures& figures) {
   return input.analysis.buckling.value_or(0) > 0 ||
          input.analysis.frequencies > 0 ||
          std::any_of(figures.buckling.begin(), figures.buckling.end(),
-                     [](const BucklingFigures& b) {
-                       return !b.modes.factors.empty() &&
-                              b.modes.factors.front() <= kSafelyStable;
+                     [](const modes::BucklingFigures& b) {
+                       return factors_that_matter(b) > 0;
                      });
 }
 
 void add_eigen_json(const EigenFigures& figures, Json& json) {
   Json buckling = Json::object();
-  for (const BucklingFigures& b : figures.buckling) {
-    Json entry = {{"factors", b.modes.factors},
+  for (const modes::BucklingFigures& b : figures.buckling) {
+    Json entry = {{"verdict", modes::name_of(modes::verdict_of(b))},
+                  {"above", safe_factor(b)},
+                  {"factors", b.modes.factors},
                   {"residuals", b.modes.residuals}};
-    if (std::isfinite(b.error)) {
-      entry["error"] = b.error;
+    for (std::size_t k = 0; k < b.stresses.size(); ++k) {
+      const modes::ModeStress& stress = b.stresses[k];
+      entry["stress"].push_back(
+          {{"von_mises", stress.von_mises},
+           {"strain", stress.strain},
+           {"position",
+            {stress.position.x(), stress.position.y(), stress.position.z()}},
+           {"slenderness", slenderness(b, k)},
+           {"matters", matters(b, k)}});
+    }
+    if (!b.errors.empty()) {
+      entry["errors"] = b.errors;
     }
     if (b.modes.factors.empty() && !b.modes.failure) {
       entry["none_below"] = b.modes.none_below;
@@ -182,8 +186,9 @@ void add_eigen_json(const EigenFigures& figures, Json& json) {
 
 std::string eigen_text(const EigenFigures& figures) {
   std::string text;
-  for (const BucklingFigures& b : figures.buckling) {
-    text += buckling_line(b);
+  for (const modes::BucklingFigures& b : figures.buckling) {
+    text +=
+        fmt::format("  buckling of '{}': {}\n", b.load_case, buckling_text(b));
   }
   if (figures.frequencies) {
     std::vector<std::string> values;
@@ -222,7 +227,7 @@ std::vector<ModeShape> mode_shapes(const case_data::Case& input,
   if (!input.analysis.buckling) {
     return shapes;
   }
-  for (const BucklingFigures& b : figures.buckling) {
+  for (const modes::BucklingFigures& b : figures.buckling) {
     for (std::size_t k = 0; k < b.modes.shapes.size(); ++k) {
       shapes.push_back({fmt::format("buckling_{}_{}", b.load_case, k + 1),
                         fmt::format("factor {:.8g}", b.modes.factors[k]),

@@ -1,27 +1,17 @@
 /// A part's buckling factors and natural frequencies.
 #pragma once
 
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "fea/modes/buckling.h"
+#include "fea/modes/buckling_verdict.h"
 #include "fea/modes/modes.h"
 #include "pipeline/forward/forward_model.h"
 
 namespace meniscus::forward {
-
-/// Of one load case.
-struct BucklingFigures {
-  std::string load_case;
-  modes::BucklingModes modes;  // as many as the case asks for, or the first
-  bool roughly = false;        // unasked, not converged, and far above 1
-  /// The mesh's own error of the first factor; NaN: not estimated.
-  double error = std::numeric_limits<double>::quiet_NaN();
-};
 
 struct FrequencyFigures {
   std::string load_case;  // whose supports hold the part; or "free"
@@ -30,7 +20,7 @@ struct FrequencyFigures {
 };
 
 struct EigenFigures {
-  std::vector<BucklingFigures> buckling;  // per load case; may be empty
+  std::vector<modes::BucklingFigures> buckling;  // per load case; may be empty
   std::optional<FrequencyFigures> frequencies;
   std::string remark;  // why nothing was computed, unasked; or empty
   double seconds = 0.0;
@@ -45,8 +35,8 @@ EigenFigures eigen_figures(const case_data::Case& input,
                            const elastic::ElasticModel& model,
                            Monitor* monitor = nullptr);
 
-/// Whether somebody reads them closely: they were asked for, or a factor is
-/// near enough to 1 to matter.
+/// Whether other meshes have something to say: of what was asked for, and of
+/// factors that matter.
 bool deserve_errors(const case_data::Case& input, const EigenFigures& figures);
 
 /// Adds "buckling" and "natural_frequencies" to result.json (docs/results.md).

@@ -59,11 +59,12 @@ DesignGradient ForwardModel::gradient(const Evaluation& evaluation,
                                       const std::vector<int>& responses) const {
   const Heeding heeding(part_->monitor);
   try {
-    return design_gradient({*part_,
-                            part_->context(fields.inputs, adjoint.film,
-                                           fields.mesh, fields.solution),
-                            evaluation.responses, adjoint.elastic},
-                           responses);
+    return design_gradient(
+        {*part_,
+         part_->context(fields.inputs, adjoint.film, fields.mesh,
+                        fields.solution, fields.response_modes),
+         evaluation.responses, adjoint.elastic},
+        responses);
   } catch (const InvalidInput& error) {
     DesignGradient none;
     none.failure = Failure{FailureKind::NotANumber, error.what()};

@@ -16,6 +16,7 @@
 #include "pipeline/forward/design_gradient.h"
 #include "pipeline/forward/exclusion.h"
 #include "pipeline/forward/part_stress.h"
+#include "pipeline/forward/response_modes.h"
 #include "pipeline/forward/scans.h"
 #include "pipeline/forward/stage_meter.h"
 
@@ -65,6 +66,7 @@ struct EvaluationFields {
   QuadraticSurface surface;       // as meshed
   TetMesh mesh;                   // ten-node
   equations::ElasticSolution solution;
+  ResponseModes response_modes;      // that the responses take
   std::vector<PartStress> stresses;  // per load case; found once, at the end
   std::vector<ModeShape> modes;      // that the case asks for; the same
   std::vector<FilmFrame> history;    // of the study, by evaluation; the same

@@ -178,6 +178,22 @@ bool freeze_elasticity(const case_data::EvaluatedCase& inputs, Monitor& monitor,
   return !start.failure;
 }
 
+/// Where the modes are counted that other designs' are followed from.
+bool freeze_modes(const case_data::EvaluatedCase& inputs, Monitor& monitor,
+                  FrozenPart& part) {
+  const StageMeter meter;
+  part.base_modes =
+      find_response_modes({.input = part.input,
+                           .inputs = inputs,
+                           .mesh = part.base_mesh,
+                           .solution = part.elasticity->base_solution(),
+                           .model = *part.elasticity,
+                           .monitor = &monitor});
+  meter.add_to(part.start.seconds.fea, part.start.operations.fea);
+  part.start.failure = part.base_modes.failure;
+  return !part.start.failure;
+}
+
 bool freeze_pairs(FrozenPart& part) {
   try {
     part.pairs = thickness_pairs_of(part.input, part.base_mesh);
@@ -195,9 +211,9 @@ AdaptedState adapted_state(const case_data::EvaluatedCase& inputs,
   fields.solution = part.elasticity->base_solution();
   fields.stresses = part_stresses(fields.mesh, inputs, fields.solution);
   fields.exclusion = part.exclusion;
-  const VectorX values =
-      respond(part.input, part.context(inputs, part.film->reference(),
-                                       fields.mesh, fields.solution));
+  const VectorX values = respond(
+      part.input, part.context(inputs, part.film->reference(), fields.mesh,
+                               fields.solution, part.base_modes));
   return {.tet = part.start.tet,
           .dofs = part.start.fea.dofs,
           .responses = values,
@@ -249,7 +265,8 @@ void adapt(const case_data::EvaluatedCase& inputs, Monitor& monitor,
   }
   part.exclusion =
       choose_exclusion(part.input, part.base_mesh, EmptyZones::Allowed);
-  if (!freeze_pairs(part) || !freeze_elasticity(inputs, monitor, part)) {
+  if (!freeze_pairs(part) || !freeze_elasticity(inputs, monitor, part) ||
+      !freeze_modes(inputs, monitor, part)) {
     return;
   }
   const Timer after_timer;
@@ -360,11 +377,13 @@ SurfaceGradient FrozenPart::to_surface(const case_data::EvaluatedCase& inputs,
   return {std::move(gradient.film), std::move(gradient.thickness)};
 }
 
-ResponseContext FrozenPart::context(
-    const case_data::EvaluatedCase& inputs, const settle::FilmState& film_state,
-    const TetMesh& mesh, const equations::ElasticSolution& solution) const {
-  return {inputs, mesh,        solution, exclusion.what,
-          &*film, &film_state, &pairs,   &scans};
+ResponseContext FrozenPart::context(const case_data::EvaluatedCase& inputs,
+                                    const settle::FilmState& film_state,
+                                    const TetMesh& mesh,
+                                    const equations::ElasticSolution& solution,
+                                    const ResponseModes& modes) const {
+  return {inputs,      mesh,   solution, exclusion.what, &*film,
+          &film_state, &pairs, &scans,   &modes};
 }
 
 bool freeze_mesh(const ForwardModelOptions& options, FrozenPart& part) {
@@ -385,7 +404,7 @@ void freeze_part(const ForwardModelOptions& options, FrozenPart& part) {
       part.input, part.base_mesh,
       options.edge_factor > 1.0 ? EmptyZones::Allowed : EmptyZones::Refused);
   if (freeze_pairs(part) && freeze_elasticity(inputs, monitor, part) &&
-      part.input.analysis.adapt) {
+      freeze_modes(inputs, monitor, part) && part.input.analysis.adapt) {
     try {
       adapt(inputs, monitor, part);
     } catch (const energy::ModesNotFound& error) {

@@ -35,6 +35,7 @@ struct FrozenPart {
   std::vector<char> curve_edge;
   std::optional<mesh_tet::MeshMotion> motion;
   std::optional<elastic::ElasticModel> elasticity;
+  ResponseModes base_modes;  // of the initial design
   Exclusion exclusion;
   functionals::ThicknessPairs pairs;
   Scans scans;
@@ -51,7 +52,8 @@ struct FrozenPart {
   ResponseContext context(const case_data::EvaluatedCase& inputs,
                           const settle::FilmState& film_state,
                           const TetMesh& mesh,
-                          const equations::ElasticSolution& solution) const;
+                          const equations::ElasticSolution& solution,
+                          const ResponseModes& modes) const;
 };
 
 /// The chain of stages at the initial design of `part.input`, each kept for

@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "fea/functionals/thickness.h"
+#include "fea/modes/mode_shapes.h"
 #include "fea/stress/peak_stress.h"
 
 namespace meniscus::forward {
@@ -161,19 +162,39 @@ std::vector<std::string> process_warnings(const case_data::Case& input,
       process.smallest_feature, input.units.length, 100.0 * thin.share)};
 }
 
-std::vector<std::string> buckling_warnings(const EigenFigures& figures) {
+std::vector<std::string> factor_warnings(const EvaluationFields& fields) {
   std::vector<std::string> warnings;
-  for (const BucklingFigures& b : figures.buckling) {
-    if (!b.modes.factors.empty() && b.modes.factors.front() < 1.0) {
+  const ResponseModes& modes = fields.response_modes;
+  for (const ModalSum& sum : modes.sums) {
+    const FoundModes& found = modes.problems[sum.problem];
+    if (found.kind != case_data::ResponseKind::BucklingFactor) {
+      continue;
+    }
+    Eigen::Index most = 0;
+    sum.weights.maxCoeff(&most);
+    const auto mode = static_cast<std::size_t>(most);
+    const auto c = static_cast<std::size_t>(found.load_case);
+    modes::BucklingFigures figures;
+    figures.modes.factors = {found.values[mode]};
+    figures.stresses = {modes::mode_stress(
+        fields.mesh, fields.inputs.materials, fields.inputs.load_cases[c],
+        fields.solution.displacements[c], found.shapes[mode])};
+    if (!matters(figures, 0)) {
       warnings.push_back(fmt::format(
-          "buckling factor below 1: the part of load case '{}' buckles at "
-          "{:.3g} of its loads; a linear analysis does not hold",
-          b.load_case, b.modes.factors.front()));
+          "'{}' is the factor of a mode that does not matter: the material "
+          "gives way long before, and at edges where stress has no limit such "
+          "factors fall with every refinement; bound the stress instead",
+          sum.response));
     }
-    if (b.modes.failure) {
-      warnings.push_back("no certain buckling factor: " +
-                         b.modes.failure->message);
-    }
+  }
+  return warnings;
+}
+
+std::vector<std::string> eigen_warnings(const EigenFigures& figures) {
+  std::vector<std::string> warnings;
+  for (const modes::BucklingFigures& b : figures.buckling) {
+    const std::vector<std::string> own = buckling_warnings(b);
+    warnings.insert(warnings.end(), own.begin(), own.end());
   }
   if (!figures.remark.empty()) {
     warnings.push_back(figures.remark);

@@ -32,8 +32,12 @@ std::vector<std::string> wall_warnings(const ForwardModel& model);
 std::vector<std::string> process_warnings(const case_data::Case& input,
                                           const TetMesh& mesh);
 
-/// Sentences for buckling factors below 1, and for eigenvalues that could not
-/// be found.
-std::vector<std::string> buckling_warnings(const EigenFigures& figures);
+/// Sentences for responses of kind buckling_factor whose mode does not matter
+/// (buckling_verdict.h).
+std::vector<std::string> factor_warnings(const EvaluationFields& fields);
+
+/// Sentences for buckling factors below 1 or near it, and for eigenvalues that
+/// could not be found.
+std::vector<std::string> eigen_warnings(const EigenFigures& figures);
 
 }  // namespace meniscus::forward

@@ -15,6 +15,7 @@
 #include "fea/functionals/stress_functionals.h"
 #include "fea/functionals/volume_functionals.h"
 #include "fea/loads/body_loads.h"
+#include "fea/modes/eigenvalue_functionals.h"
 #include "fea/stress/peak_stress.h"
 
 namespace meniscus::forward {
@@ -48,6 +49,14 @@ ResponsePartials to_partials(element::DirectedFunctional functional,
 }
 
 ResponsePartials to_partials(functionals::MassFunctional functional) {
+  std::vector<double> by_density = std::move(functional.by_density);
+  ResponsePartials result =
+      to_partials(static_cast<element::Functional&&>(functional));
+  result.by_density = std::move(by_density);
+  return result;
+}
+
+ResponsePartials to_partials(modes::ModeFunctional functional) {
   std::vector<double> by_density = std::move(functional.by_density);
   ResponsePartials result =
       to_partials(static_cast<element::Functional&&>(functional));
@@ -130,6 +139,25 @@ ResponsePartials energy(const ResponseTask& task) {
     result.cases.front().self_adjoint = share;
     result.cases.front().by_forces = share * u;
   }
+  return result;
+}
+
+/// A sum over modes that were found with the design.
+ResponsePartials modal(const ResponseTask& task) {
+  const ModalSum& sum = modal_sum(*task.fields.modes, task.response.name);
+  ResponsePartials result;
+  if (task.derivatives == element::Derivatives::All) {
+    const FoundModes& found = task.fields.modes->problems[sum.problem];
+    const modes::WeightedModes modes{found.values, found.shapes, sum.weights};
+    const loads::LoadCase held = held_as(task.fields.inputs, found.load_case);
+    result = found.kind == case_data::ResponseKind::BucklingFactor
+                 ? to_partials(modes::factor_functional(
+                       task.fields.mesh, materials(task), held,
+                       displacement(task), modes))
+                 : to_partials(modes::frequency_functional(
+                       task.fields.mesh, materials(task), held, modes));
+  }
+  result.value = sum.value;
   return result;
 }
 
@@ -342,6 +370,9 @@ ResponsePartials compute_partials(const ResponseTask& task) {
     case Kind::Compliance:
     case Kind::StrainEnergy:
       return energy(task);
+    case Kind::BucklingFactor:
+    case Kind::Frequency:
+      return modal(task);
     case Kind::Mass:
       return mass(task);
     case Kind::Volume:

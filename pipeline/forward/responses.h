@@ -9,6 +9,7 @@
 #include "fea/functionals/thickness.h"
 #include "fea/stress/exclusion_zones.h"
 #include "pipeline/case_data/case.h"
+#include "pipeline/forward/response_modes.h"
 #include "pipeline/forward/scans.h"
 
 namespace meniscus::forward {
@@ -23,8 +24,9 @@ struct ResponseContext {
   const frozen::FilmModel* film = nullptr;
   const settle::FilmState* film_state = nullptr;
   const functionals::ThicknessPairs* pairs =
-      nullptr;                   // thickness_pairs_of() the model
-  const Scans* scans = nullptr;  // read_scans() of the case
+      nullptr;                           // thickness_pairs_of() the model
+  const Scans* scans = nullptr;          // read_scans() of the case
+  const ResponseModes* modes = nullptr;  // of the design
 };
 
 /// What a response changes by one load case, all else held. What is empty is

@@ -9,7 +9,7 @@
 #include "core/error.h"
 #include "pipeline/case_data/content_hash.h"
 #include "pipeline/case_data/scan_path.h"
-#include "pipeline/forward/part_file.h"
+#include "pipeline/files/part_file.h"
 
 namespace meniscus::forward {
 
@@ -29,7 +29,7 @@ std::shared_ptr<const scan::Scan> read_scan(
         case_data::place(input, response.line), path.string()));
   }
   try {
-    return std::make_shared<const scan::Scan>(read_part_file(path, {}));
+    return std::make_shared<const scan::Scan>(files::read_part_file(path, {}));
   } catch (const MeshError& error) {
     throw InvalidInput(fmt::format("{}: '{}': {}",
                                    case_data::place(input, response.line),

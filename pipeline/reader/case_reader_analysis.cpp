@@ -9,9 +9,6 @@ namespace meniscus::reader {
 
 namespace {
 
-/// More modes at once would take more memory than the part's own solve.
-constexpr int kMostModes = 50;
-
 const std::vector<case_data::Named<equations::SolverKind>>& solver_kinds() {
   static const std::vector<case_data::Named<equations::SolverKind>> kinds = {
       {"auto", equations::SolverKind::Automatic},
@@ -58,24 +55,15 @@ void read_analysis_table(CaseContext& context, const toml::table& root,
   if (!table) {
     return;
   }
+  constexpr int most = case_data::AnalysisEntry::kMostModes;
   case_data::AnalysisEntry& analysis = result.analysis;
   analysis.adapt = table->flag("adapt").value_or(false);
   read_zones(context, *table, result);
   analysis.frequencies =
-      table->integer_within("frequencies", 0, kMostModes).value_or(0);
-  analysis.buckling = table->integer_within("buckling", 0, kMostModes);
+      table->integer_within("frequencies", 0, most).value_or(0);
+  analysis.buckling = table->integer_within("buckling", 0, most);
   read_solver(context, *table, analysis);
-  const auto is_free = [](const case_data::LoadCaseEntry& entry) {
-    return entry.name == "free";
-  };
-  if (table->text("supports_of") == "free" &&
-      std::none_of(result.load_cases.begin(), result.load_cases.end(),
-                   is_free)) {
-    analysis.supports_of = case_data::AnalysisEntry::kFree;
-  } else {
-    analysis.supports_of =
-        index_of_load_case(context, *table, result, "supports_of");
-  }
+  analysis.supports_of = index_of_held(context, *table, result, "supports_of");
   if (result.load_cases.empty() && context.problems.empty()) {
     context.problems.add(table->line(),
                          "analysis needs a load case: its supports and loads");

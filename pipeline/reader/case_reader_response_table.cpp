@@ -42,7 +42,17 @@ TableSpec response_table() {
        {"axis", K::Vector, std::nullopt, false,
         "of rotation, right-handed, and of inertia; any length but 0"},
        {"load_case", K::Name, D::None, false,
-        "of what depends on loads; the first when left out"},
+        "of what depends on loads; the first when left out; of frequency the "
+        "one whose supports and springs hold the part, or free, "
+        "analysis.supports_of when left out"},
+       {"number", K::Integer, D::None, false,
+        "of buckling_factor and frequency: which mode, 1 to 50, counted at the "
+        "initial design and followed from there by its shape; 1 when left "
+        "out"},
+       {"cluster", K::Constant, D::None, false,
+        "of mode 1: factors or frequencies within so much of the least, as a "
+        "part of it, count, so that the value is smooth where they cross; 0: "
+        "that mode alone, followed by its shape; 0.1 when left out"},
        {"load_cases", K::Names, D::None, false,
         "of fatigue: the two that loads go to and fro between; of envelope "
         "with `of`: all when left out; of stress_ratio in place of load_case: "

@@ -29,6 +29,10 @@ double constant_above(CaseContext& context, const CaseTable& table,
 
 namespace {
 
+/// What a bound of eigenvalues is over, in parts of the least: two equal ones
+/// are told 2 % too low, any number of them 9 %.
+constexpr double kUsualCluster = 0.1;
+
 /// The index of the name that `key` gives among `known`; 0, and a note, for a
 /// name that is not there.
 int index_among(CaseContext& context, const CaseTable& table, const char* key,
@@ -255,6 +259,51 @@ void read_facing(CaseContext& context, const CaseTable& table,
   }
 }
 
+/// Which of the modes, and where its part is held.
+void read_mode(CaseContext& context, const CaseTable& table,
+               const case_data::Case& result,
+               case_data::ResponseEntry& response) {
+  constexpr int kMost = case_data::AnalysisEntry::kMostModes;
+  const bool of_frequency = response.kind == case_data::ResponseKind::Frequency;
+  if (!of_frequency &&
+      response.kind != case_data::ResponseKind::BucklingFactor) {
+    return;
+  }
+  if (of_frequency) {
+    response.load_case =
+        table.has("load_case")
+            ? index_of_held(context, table, result, "load_case")
+            : result.analysis.supports_of;
+  }
+  if (result.analysis.solver == equations::SolverKind::Distributed) {
+    context.problems.add(
+        table.line("kind"),
+        fmt::format("{} needs the matrix in one process, and analysis.solver "
+                    "= \"petsc\" spreads it; choose another solver or take "
+                    "it out",
+                    table.path()));
+  }
+  response.number = table.integer_within("number", 1, kMost).value_or(1);
+  const bool first = response.number == 1;
+  const double usual = first ? kUsualCluster : 0.0;
+  response.cluster = table.constant("cluster").value_or(usual);
+  if (!(response.cluster >= 0.0 && response.cluster < 1.0)) {
+    context.problems.add(
+        table.line("cluster"),
+        fmt::format("{}.cluster is {:g}; it must be from 0 to below 1; {:g} "
+                    "when left out",
+                    table.path(), response.cluster, usual));
+    response.cluster = usual;
+  } else if (!first && response.cluster > 0.0) {
+    context.problems.add(
+        table.line("cluster"),
+        fmt::format("{}.cluster is of the lowest modes, and number is {}; "
+                    "take one of the two out",
+                    table.path(), response.number));
+    response.cluster = 0.0;
+  }
+}
+
 case_data::ResponseEntry read_response(CaseContext& context,
                                        const CaseTable& table,
                                        const case_data::ResponseRow& row,
@@ -269,13 +318,15 @@ case_data::ResponseEntry read_response(CaseContext& context,
   response.direction = table.vector_or_zero(
       case_data::needs_key(row, "axis") ? "axis" : "direction");
   const std::vector<std::string>& optional = row.keys.optional;
-  if (std::find(optional.begin(), optional.end(), "load_case") !=
-      optional.end()) {
+  if (row.kind != case_data::ResponseKind::Frequency &&
+      std::find(optional.begin(), optional.end(), "load_case") !=
+          optional.end()) {
     response.load_case = index_of_load_case(context, table, result);
   }
   if (table.has("through")) {
     response.point = table.vector_or_zero("through");
   }
+  read_mode(context, table, result, response);
   response.weight = table.place_quantity("weight");
   response.power = read_power(context, table, response);
   response.sharpness =
@@ -319,6 +370,19 @@ int index_of_load_case(CaseContext& context, const CaseTable& table,
   }
   context.problems.unknown(table.line(key), "load case", *wanted, known);
   return 0;
+}
+
+int index_of_held(CaseContext& context, const CaseTable& table,
+                  const case_data::Case& result, const char* key) {
+  const auto is_free = [](const case_data::LoadCaseEntry& entry) {
+    return entry.name == "free";
+  };
+  if (table.text(key) == "free" &&
+      std::none_of(result.load_cases.begin(), result.load_cases.end(),
+                   is_free)) {
+    return case_data::AnalysisEntry::kFree;
+  }
+  return index_of_load_case(context, table, result, key);
 }
 
 void read_responses(CaseContext& context, const toml::table& root,

@@ -79,6 +79,11 @@ int index_of_load_case(CaseContext& context, const CaseTable& table,
                        const case_data::Case& result,
                        const char* key = "load_case");
 
+/// The same, or AnalysisEntry::kFree for "free" where no load case has that
+/// name.
+int index_of_held(CaseContext& context, const CaseTable& table,
+                  const case_data::Case& result, const char* key);
+
 /// After load cases and bodies.
 void read_responses(CaseContext& context, const toml::table& root,
                     case_data::Case& result);

@@ -12,7 +12,7 @@
 #include "core/heed_stop.h"
 #include "mesh_tet/quadratic.h"
 #include "mesh_tet/tetrahedralize.h"
-#include "pipeline/forward/part_file.h"
+#include "pipeline/files/part_file.h"
 #include "pipeline/forward/work_estimate.h"
 #include "pipeline/results/even_surface.h"
 #include "pipeline/results/face_list.h"
@@ -254,7 +254,7 @@ PartFigures imported_part_figures(const std::filesystem::path& path,
   }
   const double edge = run.input.resolution.fea;
   const auto read = [&](double size) {
-    return forward::read_part_file(
+    return files::read_part_file(
         path,
         {.unit = run.input.units.length, .edge = size, .monitor = monitor});
   };
@@ -269,7 +269,7 @@ PartFigures imported_part_figures(const std::filesystem::path& path,
                              facets_with_short_edges(own, longest), edge),
       edge);
   std::unique_ptr<PartShape> shape;
-  if (forward::has_curved_faces(path)) {
+  if (files::has_curved_faces(path)) {
     shape = std::make_unique<PartShape>(read(kShapeInEdges * edge));
   }
   if (shape != nullptr) {

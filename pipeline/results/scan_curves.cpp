@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "pipeline/forward/part_file.h"
+#include "pipeline/files/part_file.h"
 #include "pipeline/results/imported_part.h"
 
 namespace meniscus::results {
@@ -53,12 +53,12 @@ std::string curves_text(const scan::ScanRimReport& report,
 scan::ScanRimReport rims_of_scan(const std::filesystem::path& scan,
                                  const scan::ScanRimOptions& options) {
   const std::string ending = scan.extension().string();
-  if (!forward::is_part_file(scan) || ending == ".step" || ending == ".stp") {
+  if (!files::is_part_file(scan) || ending == ".step" || ending == ".stp") {
     throw InvalidInput(
         fmt::format("{}: expected a scan, a file that ends in .stl or .obj",
                     scan.string()));
   }
-  return scan::find_rims(forward::read_part_file(scan, {}), options);
+  return scan::find_rims(files::read_part_file(scan, {}), options);
 }
 
 }  // namespace meniscus::results

@@ -395,9 +395,6 @@ void StudyRun::solve_eigenproblems() {
       input_, fields_, stage().evaluator().model().elasticity(), &limited_);
   own_seconds_.fea += result_.eigen->seconds;
   fields_.modes = forward::mode_shapes(input_, *result_.eigen);
-  for (std::string& warning : forward::buckling_warnings(*result_.eigen)) {
-    result_.warnings.push_back(std::move(warning));
-  }
 }
 
 void StudyRun::estimate_element_errors_of_best() {
@@ -574,6 +571,14 @@ void StudyRun::warn() {
   for (const auto& [constraint, held] : held_above_) {
     result_.warnings.push_back(held.warning);
     result_.constraints[constraint].held = held.lower;
+  }
+  for (std::string& warning : forward::factor_warnings(fields_)) {
+    result_.warnings.push_back(std::move(warning));
+  }
+  if (result_.eigen) {  // whose errors are known by now
+    for (std::string& warning : forward::eigen_warnings(*result_.eigen)) {
+      result_.warnings.push_back(std::move(warning));
+    }
   }
   if (!left_out_.empty()) {
     result_.warnings.push_back(

@@ -252,7 +252,14 @@ export interface Result {
   envelopes?: Record<string, { most?: string; least?: string; value: number | null }>;
   buckling?: Record<
     string,
-    { factors?: (number | null)[]; none_below?: number | null }
+    {
+      verdict?: string;
+      above?: number | null;
+      factors?: (number | null)[];
+      errors?: (number | null)[];
+      stress?: { matters: boolean }[];
+      none_below?: number | null;
+    }
   >;
   natural_frequencies?: { values: number[]; supports_of?: string };
   sweep?: {

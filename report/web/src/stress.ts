@@ -93,6 +93,23 @@ export function stressSection(data: PageData): HTMLElement | null {
   return section("stress", "Stress and how even it is", ...children);
 }
 
+/** Factors that matter with their errors, or what none that matters is below. */
+function bucklingText(b: NonNullable<NonNullable<PageData["result"]>["buckling"]>[string]): string {
+  if (!b.factors || b.factors.length === 0) {
+    return b.none_below == null ? "not found" : `none below ${number(b.none_below)}`;
+  }
+  if (b.verdict === "beyond_yield") {
+    return `none that matters below ${number(b.above)}`;
+  }
+  return b.factors
+    .filter((_, k) => b.stress?.[k]?.matters ?? true)
+    .map((f, k) => {
+      const error = b.errors?.[k];
+      return error == null ? `${number(f)} (error not known)` : `${number(f)} \u00b1 ${number(error)}`;
+    })
+    .join(", ");
+}
+
 /** Buckling factors and natural frequencies, where there are any. */
 export function eigenSection(data: PageData): HTMLElement | null {
   const buckling = Object.entries(data.result?.buckling ?? {});
@@ -105,9 +122,7 @@ export function eigenSection(data: PageData): HTMLElement | null {
         [{ head: "load case" }, { head: "smallest factors", numeric: true }],
         buckling.map(([name, b]) => [
           words(name),
-          b.factors && b.factors.length > 0
-            ? b.factors.map((f) => number(f)).join(", ")
-            : `none below ${number(b.none_below)}`,
+          bucklingText(b),
         ]),
       ),
     );

@@ -1,8 +1,11 @@
 /// The exact gradient through film, mesh and elasticity against central
 /// differences of the same map.
+#include <omp.h>
+
 #include <gmock/gmock.h>
 
 #include "core/operation_count.h"
+#include "pipeline/case_data/response_entries.h"
 #include "pipeline/forward/forward_model.h"
 #include "pipeline/forward/gradient_check.h"
 #include "tests/support/case_text.h"
@@ -118,6 +121,60 @@ value = "mass * 1e6 + sqrt(norm) * load / (1000 + lean) + area / fill"
 [study])");
 }
 
+/// A strut that is pushed, with eigenvalues of every kind: bounds of clusters,
+/// and modes that are followed.
+std::string eigenvalues() {
+  std::string text = changed(strut(), "[curves.base]",
+                             "[design.thrust]\ninitial = 2000.0\n"
+                             "bounds = [1000.0, 3000.0]\n\n"
+                             "[curves.base]");
+  text = changed(text, "force = [\"load\", 0, 0]",
+                 "force = [\"load / 10\", 0, \"-thrust\"]");
+  text = changed(text, "fea = 6.0\nfilm = 3.0", "fea = 10.0\nfilm = 5.0");
+  text = changed(text, "youngs_modulus = 71700.0",
+                 "youngs_modulus = \"71700 + thrust\"");
+  text = changed(text, "density = 2.8e-9", "density = \"2.8e-9 * foot / 25\"");
+  return changed(text, "[responses.mass]", R"([responses.stable]
+kind = "buckling_factor"
+
+[responses.second]
+kind = "buckling_factor"
+number = 2
+
+[responses.hum]
+kind = "frequency"
+
+[responses.ring]
+kind = "frequency"
+load_case = "free"
+number = 2
+
+[responses.mass])");
+}
+
+/// Evaluated a little beside the initial design, and the derivatives there.
+struct Differentiated {
+  VectorX responses;
+  forward::DesignGradient by;
+};
+
+Differentiated differentiated(const std::vector<std::string>& responses) {
+  const case_data::Case input = read(eigenvalues());
+  const forward::ForwardModel model(input);
+  EXPECT_FALSE(model.failure());
+  forward::EvaluationFields fields;
+  forward::AdjointState adjoint;
+  const forward::Evaluation here = model.evaluate(
+      case_data::initial_design(input) + Eigen::Vector2d(0.3, 50.0), &fields,
+      &adjoint);
+  EXPECT_FALSE(here.failure);
+  std::vector<int> wanted;
+  for (const std::string& name : responses) {
+    wanted.push_back(case_data::response_index(input, name));
+  }
+  return {here.responses, model.gradient(here, fields, adjoint, wanted)};
+}
+
 void expect_exact(const std::string& text, const VectorX& move) {
   const case_data::Case input = read(text);
   const VectorX design = case_data::initial_design(input) + move;
@@ -129,6 +186,31 @@ void expect_exact(const std::string& text, const VectorX& move) {
 
 TEST(DesignGradient, IsExactForEveryResponseAtTheFrozenDesign) {
   expect_exact(every_response(), VectorX::Zero(3));
+}
+
+TEST(DesignGradient, OfEigenvaluesIsExact) {
+  expect_exact(eigenvalues(), VectorX::Zero(2));
+  expect_exact(eigenvalues(), Eigen::Vector2d(0.3, 50.0));
+}
+
+// One for the stress's dependence on displacements, whatever the cluster.
+TEST(DesignGradient, OfABucklingFactorCostsOneSolve) {
+  EXPECT_EQ(differentiated({"stable"}).by.solves, 1);
+  EXPECT_EQ(differentiated({"second"}).by.solves, 1);
+  EXPECT_EQ(differentiated({"hum", "ring"}).by.solves, 0);
+}
+
+TEST(DesignGradient, OfEigenvaluesHasTheSameBitsOnOneAndTwoThreads) {
+  const auto run = [](int threads) {
+    omp_set_num_threads(threads);
+    return differentiated({"stable", "second", "hum", "ring"});
+  };
+  const int before = omp_get_max_threads();
+  const Differentiated one = run(1);
+  const Differentiated two = run(2);
+  omp_set_num_threads(before);
+  EXPECT_TRUE(one.responses == two.responses);
+  EXPECT_TRUE(one.by.jacobian == two.by.jacobian);
 }
 
 TEST(DesignGradient, IsExactAwayFromTheFrozenDesign) {

@@ -1,5 +1,7 @@
 #include "pipeline/forward/eigen_figures.h"
 
+#include <cmath>
+
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -55,7 +57,7 @@ TEST(EigenFigures, UnaskedAreOneFactorPerLoadCase) {
   const double factor = exact.buckling[0].modes.factors.at(0);
   EXPECT_NEAR(rough.buckling[0].modes.factors[0], factor, 1e-3 * factor);
   EXPECT_THAT(forward::mode_shapes(case_data::Case{}, rough), IsEmpty());
-  EXPECT_THAT(forward::buckling_warnings(rough), IsEmpty());
+  EXPECT_THAT(forward::eigen_warnings(rough), IsEmpty());
 }
 
 TEST(EigenFigures, OfNoBucklingAreNone) {
@@ -78,7 +80,8 @@ TEST(EigenFigures, TellFrequenciesFactorsAndTheirModes) {
   EXPECT_LE(told["buckling"]["push"]["residuals"][1].get<double>(), 1e-6);
   EXPECT_THAT(
       forward::eigen_text(figures),
-      AllOf(HasSubstr("  buckling of 'push': "), HasSubstr(" x the loads\n"),
+      AllOf(HasSubstr("  buckling of 'push': "),
+            HasSubstr(" x the loads on this mesh alone, whose error is not"),
             HasSubstr("  natural frequencies, held as in 'pull': ")));
   std::vector<std::string> names;
   for (const forward::ModeShape& mode : forward::mode_shapes(input, figures)) {
@@ -107,9 +110,69 @@ TEST(EigenFigures, OfAFreePartCountItsRigidMotions) {
 
 TEST(EigenFigures, WarnOfAFactorBelowOne) {
   EXPECT_THAT(
-      forward::buckling_warnings(Bar(1e5).figures({})),
+      forward::eigen_warnings(Bar(1e5).figures({})),
       testing::Contains(AllOf(HasSubstr("buckling factor below 1"),
                               HasSubstr("load case 'push' buckles at"))));
+}
+
+/// The pushed bar, with a yield strength and an error, 0.1 of the factor.
+modes::BucklingFigures judged(double push, double yield, double error) {
+  Bar bar(push);
+  bar.fields.inputs.materials[0].yield_strength = yield;
+  modes::BucklingFigures figures = bar.figures({.buckling = 1}).buckling[0];
+  figures.errors = {error * figures.modes.factors.at(0)};
+  return figures;
+}
+
+TEST(BucklingVerdict, IsOfFactorErrorAndYield) {
+  using modes::BucklingVerdict;
+  // Euler's stress of the bar: pi^2 E h^2 / (48 L^2), 276 MPa.
+  constexpr double kCritical = 276.0;
+  const modes::BucklingFigures stands = judged(100.0, 300.0, 0.1);
+  EXPECT_EQ(verdict_of(stands), BucklingVerdict::Stands);
+  EXPECT_NEAR(slenderness(stands, 0), std::sqrt(300.0 / kCritical), 0.05);
+  EXPECT_NEAR(safe_factor(stands), 0.9 * stands.modes.factors[0], 1e-9);
+  EXPECT_THAT(buckling_text(stands),
+              AllOf(HasSubstr(" +- "), HasSubstr(" x the loads, before it")));
+  // Where yield is a hundredth of it, nothing buckles that matters.
+  const modes::BucklingFigures stocky = judged(100.0, kCritical / 100.0, 0.1);
+  EXPECT_EQ(verdict_of(stocky), BucklingVerdict::BeyondYield);
+  EXPECT_THAT(buckling_text(stocky),
+              testing::MatchesRegex("none that matters below 2\\.[0-9] x the "
+                                    "loads, where its stress is [0-9.e+]+ "
+                                    "times yield"));
+  EXPECT_EQ(safe_factor(stocky), stocky.modes.factors[0]);
+  EXPECT_THAT(modes::buckling_warnings(stocky), IsEmpty());
+}
+
+TEST(BucklingVerdict, SaysHowSureItIs) {
+  using modes::BucklingVerdict;
+  const double critical = 100.0 * judged(100.0, 300.0, 0.0).modes.factors[0];
+  EXPECT_EQ(verdict_of(judged(critical / 0.8, 300.0, 0.1)),
+            BucklingVerdict::Buckles);
+  const modes::BucklingFigures near = judged(critical / 1.05, 300.0, 0.1);
+  EXPECT_EQ(verdict_of(near), BucklingVerdict::Uncertain);
+  EXPECT_THAT(modes::buckling_warnings(near),
+              ElementsAre(HasSubstr("within its error of 1")));
+  const modes::BucklingFigures apart = judged(critical / 9.0, 300.0, 0.7);
+  EXPECT_EQ(verdict_of(apart), BucklingVerdict::Stands);
+  EXPECT_THAT(buckling_text(apart),
+              HasSubstr("no certain factor: 9 x the loads on this mesh, no "
+                        "less than 2.6 on others"));
+  modes::BucklingFigures alone = judged(critical / 9.0, 300.0, 0.0);
+  alone.errors.clear();
+  EXPECT_EQ(verdict_of(alone), BucklingVerdict::Uncertain);
+  EXPECT_EQ(safe_factor(alone), 0.0);
+}
+
+TEST(BucklingVerdict, WithoutAYieldStrengthIsOfTheStrain) {
+  Bar bar(100.0);
+  modes::BucklingFigures figures = bar.figures({.buckling = 1}).buckling[0];
+  EXPECT_TRUE(std::isnan(slenderness(figures, 0)));
+  EXPECT_TRUE(matters(figures, 0));
+  figures.stresses[0].strain = 0.11 / figures.modes.factors[0];
+  EXPECT_FALSE(matters(figures, 0));
+  EXPECT_THAT(buckling_text(figures), HasSubstr("it is strained by 11 %"));
 }
 
 TEST(EigenFigures, WithoutAnAnswerSayWhy) {
@@ -121,7 +184,7 @@ TEST(EigenFigures, WithoutAnAnswerSayWhy) {
   input.analysis = {.frequencies = 2, .buckling = 0};
   const forward::EigenFigures figures =
       forward::eigen_figures(input, fields, model);
-  EXPECT_THAT(forward::buckling_warnings(figures),
+  EXPECT_THAT(forward::eigen_warnings(figures),
               ElementsAre(HasSubstr("'steel' of region 0 has density 0")));
 }
 
@@ -132,10 +195,10 @@ TEST(EigenFigures, AreLeftOutWithARemarkWhereTheMatrixIsSpread) {
   const forward::EigenFigures figures =
       forward::eigen_figures(input, bar.fields, *bar.model);
   EXPECT_THAT(figures.buckling, IsEmpty());
-  EXPECT_THAT(forward::buckling_warnings(figures),
+  EXPECT_THAT(forward::eigen_warnings(figures),
               ElementsAre(HasSubstr("no buckling factors: the solver petsc")));
   input.analysis.buckling = 0;
-  EXPECT_THAT(forward::buckling_warnings(
+  EXPECT_THAT(forward::eigen_warnings(
                   forward::eigen_figures(input, bar.fields, *bar.model)),
               IsEmpty());
 }

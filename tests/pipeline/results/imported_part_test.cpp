@@ -13,7 +13,7 @@
 #include "core/geometry/mesh_checks.h"
 #include "io/read_stl.h"
 #include "io/stl.h"
-#include "pipeline/forward/part_file.h"
+#include "pipeline/files/part_file.h"
 #include "pipeline/results/even_surface.h"
 #include "tests/support/shapes.h"
 #include "tests/support/temp_folder.h"
@@ -75,8 +75,8 @@ TEST(ReadStl, BinaryFilesAreOneFace) {
   const SurfaceMesh ball = shapes::sphere(2.0, 2);
   const TempFolder folder;
   io::write_stl(folder / "ball.STL", ball, {.name = "solid ball"});
-  ASSERT_TRUE(forward::is_part_file(folder / "ball.STL"));
-  const SurfaceMesh mesh = forward::read_part_file(folder / "ball.STL", {});
+  ASSERT_TRUE(files::is_part_file(folder / "ball.STL"));
+  const SurfaceMesh mesh = files::read_part_file(folder / "ball.STL", {});
   EXPECT_EQ(mesh.facets.size(), ball.facets.size());
   EXPECT_EQ(mesh.points.size(), ball.points.size());
   EXPECT_EQ(mesh.labels.size(), 1U);
@@ -90,7 +90,7 @@ TEST(ReadStl, BinaryFilesAreOneFace) {
   const float broken = std::numeric_limits<float>::quiet_NaN();
   std::memcpy(bytes.data() + 84 + 50 * 7 + 12, &broken, sizeof broken);
   EXPECT_THROW(io::read_stl_text(bytes, "b.stl"), InvalidInput);
-  EXPECT_THROW(forward::read_part_file(folder / "ball.igs", {}), InvalidInput);
+  EXPECT_THROW(files::read_part_file(folder / "ball.igs", {}), InvalidInput);
 }
 
 TEST(ImportedPart, ShortEdgesKeepTheShape) {

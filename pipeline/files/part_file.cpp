@@ -1,4 +1,4 @@
-#include "pipeline/forward/part_file.h"
+#include "pipeline/files/part_file.h"
 
 #include <algorithm>
 #include <array>
@@ -16,7 +16,7 @@
 #include "io/obj.h"
 #include "io/read_stl.h"
 
-namespace meniscus::forward {
+namespace meniscus::files {
 
 namespace {
 
@@ -97,4 +97,4 @@ SurfaceMesh read_part_file(const std::filesystem::path& path,
   return reader->read(path, options);
 }
 
-}  // namespace meniscus::forward
+}  // namespace meniscus::files

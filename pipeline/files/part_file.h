@@ -6,7 +6,7 @@
 #include "cad/step/step_reader.h"
 #include "core/geometry/surface_mesh.h"
 
-namespace meniscus::forward {
+namespace meniscus::files {
 
 /// A file's name ends as those of parts that can be read: .stl, .obj, .step,
 /// .stp, .fe, in any case.
@@ -21,4 +21,4 @@ bool has_curved_faces(const std::filesystem::path& path);
 SurfaceMesh read_part_file(const std::filesystem::path& path,
                            const step::ReadStepOptions& options);
 
-}  // namespace meniscus::forward
+}  // namespace meniscus::files
