@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/types.h"
@@ -21,6 +22,17 @@ using MatrixOfPlace = std::function<Mat3(const Vec3&)>;
 struct SlopedField {
   NumberOfPlace value;
   VectorOfPlace slope;
+};
+
+/// Surfaces that act as one: a name, or a list of them, each once.
+struct Surfaces : std::vector<std::string> {
+  using std::vector<std::string>::vector;
+  Surfaces(std::string one)  // NOLINT: a name is a list of one
+      : std::vector<std::string>{std::move(one)} {}
+  Surfaces(const char* one)  // NOLINT: the same
+      : std::vector<std::string>{one} {}
+  /// "lug_1", "lug_1 and lug_2", for messages.
+  std::string text() const;
 };
 
 enum class SupportKind {
@@ -58,9 +70,9 @@ struct SpringBed {
   bool operator==(const SpringBed&) const = default;
 };
 
-/// A total force spread as uniform traction over a surface [force].
+/// A total force spread as uniform traction over all of the surfaces [force].
 struct SurfaceForce {
-  std::string surface;
+  Surfaces surfaces;
   Vec3 total = Vec3::Zero();
 };
 
@@ -80,11 +92,11 @@ struct SurfaceTraction {
   MatrixOfPlace slope;  // dt_i/dx_j of the field, for derivatives only
 };
 
-/// A force at a point and a moment, carried by a surface without stiffening it:
-/// the nodal forces are those of the same force and moment that are least in
-/// the norm weighted by area (RBE3).
+/// A force at a point and a moment, carried by surfaces together without
+/// stiffening them: the nodal forces are those of the same force and moment
+/// that are least in the norm weighted by area (RBE3).
 struct RemoteLoad {
-  std::string surface;
+  Surfaces surfaces;
   Vec3 point = Vec3::Zero();   // where the force acts [length]
   Vec3 force = Vec3::Zero();   // [force]
   Vec3 moment = Vec3::Zero();  // beside the force's own [force length]

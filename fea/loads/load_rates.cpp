@@ -15,9 +15,9 @@ namespace meniscus::loads {
 
 namespace {
 
-Vec3 mean_over(const TetMesh& mesh, const std::string& surface,
+Vec3 mean_over(const TetMesh& mesh, const Surfaces& surfaces,
                const VectorX& v) {
-  const SurfaceWeights w = surface_weights(mesh, surface);
+  const SurfaceWeights w = surface_weights(mesh, surfaces);
   Vec3 sum = Vec3::Zero();
   for (std::size_t k = 0; k < w.nodes.size(); ++k) {
     sum +=
@@ -32,7 +32,7 @@ void add_surface_loads(const TetMesh& mesh, const LoadCase& load_case,
   // A total force F: f . v = F . (mean of v over the surface).
   for (const SurfaceForce& load : load_case.forces) {
     out.by_number.forces.push_back(
-        {load.surface, mean_over(mesh, load.surface, v)});
+        {load.surfaces, mean_over(mesh, load.surfaces, v)});
   }
   // A pressure: -int N . v by its value; a field keeps weights and places of
   // the points, so that any rate of it is a sum.
@@ -77,7 +77,7 @@ void add_surface_loads(const TetMesh& mesh, const LoadCase& load_case,
   for (const RemoteLoad& load : load_case.remote_loads) {
     const RemoteGradient by = remote_gradient(mesh, load, v, nullptr);
     out.by_number.remote_loads.push_back(
-        {load.surface, by.by_point, by.by_force, by.by_moment});
+        {load.surfaces, by.by_point, by.by_force, by.by_moment});
   }
 }
 

@@ -20,23 +20,25 @@ namespace {
 /// surface's weights.
 void add_force(const TetMesh& mesh, const loads::SurfaceForce& load,
                const VectorX& v, Points& gradient) {
-  const loads::SurfaceWeights w = loads::surface_weights(mesh, load.surface);
+  const loads::SurfaceWeights w = loads::surface_weights(mesh, load.surfaces);
   const double area = w.weights.sum();
   double mean = 0.0;
   for (std::size_t k = 0; k < w.nodes.size(); ++k) {
     mean += w.weights[static_cast<Eigen::Index>(k)] / area *
             load.total.dot(v.segment<3>(3L * w.nodes[k]));
   }
-  element::pull_back_faces(
-      mesh, element::surface_label(mesh, load.surface),
-      element::FaceRule::Three,
-      [&](int f,
-          const element::FacePoint& point) -> element::FacePointGradient {
-        const double here =
-            load.total.dot(element::value_at(mesh, f, point, v));
-        return {.by_normal = (here - mean) / area * point.normal.normalized()};
-      },
-      gradient);
+  for (const std::string& surface : load.surfaces) {
+    element::pull_back_faces(
+        mesh, element::surface_label(mesh, surface), element::FaceRule::Three,
+        [&](int f,
+            const element::FacePoint& point) -> element::FacePointGradient {
+          const double here =
+              load.total.dot(element::value_at(mesh, f, point, v));
+          return {.by_normal =
+                      (here - mean) / area * point.normal.normalized()};
+        },
+        gradient);
+  }
 }
 
 void add_pressure(const TetMesh& mesh, const loads::LoadCase& load_case,

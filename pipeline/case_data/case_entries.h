@@ -171,7 +171,7 @@ enum class LoadKind {
 /// What the kind does not need is empty.
 struct LoadEntry {
   LoadKind kind = LoadKind::Force;
-  std::string surface;
+  loads::Surfaces surfaces;
   QuantityVector vector;  // force, gravity, axis of spin
   QuantityVector moment;
   QuantityVector at;    // the remote point; on the axis of spin

@@ -12,7 +12,7 @@ namespace {
 
 loads::SurfaceTraction traction_of(const LoadEntry& load,
                                    const CaseValues& values) {
-  loads::SurfaceTraction result{.surface = load.surface};
+  loads::SurfaceTraction result;
   const auto& t = load.traction;
   if (!t[0].of_place && !t[1].of_place && !t[2].of_place) {
     result.traction = {values.at(t[0].quantity), values.at(t[1].quantity),
@@ -41,27 +41,35 @@ void add_load(const LoadEntry& load, const CaseValues& values,
               loads::LoadCase& result) {
   switch (load.kind) {
     case LoadKind::Force:
-      result.forces.push_back({load.surface, values.at(load.vector)});
+      result.forces.push_back({load.surfaces, values.at(load.vector)});
       break;
     case LoadKind::Remote:
-      result.remote_loads.push_back({load.surface, values.at(load.at),
+      result.remote_loads.push_back({load.surfaces, values.at(load.at),
                                      values.at(load.vector),
                                      values.at(load.moment)});
       break;
     case LoadKind::Pressure: {
-      loads::SurfacePressure pressure{.surface = load.surface};
+      loads::SurfacePressure pressure;
       if (load.place.of_place) {
         pressure.field = values.field(load.place);
         pressure.slope = values.slope(load.place);
       } else {
         pressure.pressure = values.at(load.place.quantity);
       }
-      result.pressures.push_back(std::move(pressure));
+      for (const std::string& surface : load.surfaces) {
+        pressure.surface = surface;
+        result.pressures.push_back(pressure);
+      }
       break;
     }
-    case LoadKind::Traction:
-      result.tractions.push_back(traction_of(load, values));
+    case LoadKind::Traction: {
+      loads::SurfaceTraction traction = traction_of(load, values);
+      for (const std::string& surface : load.surfaces) {
+        traction.surface = surface;
+        result.tractions.push_back(traction);
+      }
       break;
+    }
     case LoadKind::Gravity:
       result.gravity += values.at(load.vector);
       break;

@@ -68,7 +68,7 @@ loads::SpringBed read_springs(CaseContext& context, const CaseTable& table) {
 void read_support(CaseContext& context, const CaseTable& table,
                   const case_data::Case& result,
                   case_data::LoadCaseEntry& load_case) {
-  const std::string surface = surface_on(context, table, result);
+  const loads::Surfaces surfaces = surfaces_on(context, table, result);
   const bool springs = table.has("stiffness") || table.has("normal_stiffness");
   if (table.has("fix") == springs) {
     context.problems.add(
@@ -76,16 +76,25 @@ void read_support(CaseContext& context, const CaseTable& table,
         fmt::format(
             "{} on '{}' has {}; expected one of fix and stiffness or "
             "normal_stiffness",
-            table.path(), surface,
+            table.path(), surfaces.text(),
             springs ? "both fix and springs" : "neither fix nor springs"));
   } else if (springs) {
     loads::SpringBed bed = read_springs(context, table);
-    bed.surface = surface;
-    load_case.springs.push_back(std::move(bed));
+    if (surfaces.size() > 1 && bed.measure == loads::SpringMeasure::Total) {
+      note(context, table, "stiffness_of",
+           "is total on several surfaces; give each an entry with its share");
+    }
+    for (const std::string& surface : surfaces) {
+      bed.surface = surface;
+      load_case.springs.push_back(bed);
+    }
   } else {
-    loads::Support support{.surface = surface};
+    loads::Support support;
     read_fix(context, table, support);
-    load_case.supports.push_back(std::move(support));
+    for (const std::string& surface : surfaces) {
+      support.surface = surface;
+      load_case.supports.push_back(support);
+    }
   }
 }
 
@@ -121,7 +130,7 @@ std::vector<std::string> load_names(bool on_surface) {
 
 /// The load's key: force before moment; empty, and a note, when it is not one.
 std::string load_key(CaseContext& context, const CaseTable& table,
-                     const std::string& surface) {
+                     const loads::Surfaces& surfaces) {
   std::vector<std::string> found;
   for (const LoadRow& row : load_kinds()) {
     if (table.has(row.name) &&
@@ -137,7 +146,7 @@ std::string load_key(CaseContext& context, const CaseTable& table,
       table.line(),
       fmt::format(
           "{}{} has {}; expected one of {}", table.path(),
-          surface.empty() ? "" : fmt::format(" on '{}'", surface),
+          surfaces.empty() ? "" : fmt::format(" on '{}'", surfaces.text()),
           found.empty() ? "no load"
                         : fmt::format("{}", fmt::join(found, " and ")),
           fmt::join(split_choices(case_data::choices_of(load_kinds())), ", ")));
@@ -186,9 +195,9 @@ void check_load_keys(CaseContext& context, const CaseTable& table,
 void read_load(CaseContext& context, const CaseTable& table,
                const case_data::Case& result,
                case_data::LoadCaseEntry& load_case) {
-  case_data::LoadEntry load{.surface = surface_on(context, table, result),
+  case_data::LoadEntry load{.surfaces = surfaces_on(context, table, result),
                             .line = table.line()};
-  const std::string key = load_key(context, table, load.surface);
+  const std::string key = load_key(context, table, load.surfaces);
   if (key.empty()) {
     return;
   }
@@ -227,8 +236,9 @@ TableSpec load_table() {
       TableNeed::Optional,
       fmt::format("A load: {} on a surface, or {} of all bodies",
                   either_of(load_names(true)), either_of(load_names(false))),
-      {{"on", K::Name, D::None, false,
-        fmt::format("of {}: the surface that is loaded",
+      {{"on", K::NameOrNames, D::None, false,
+        fmt::format("of {}: the surface that is loaded, or a list: force and "
+                    "moment are of all together, pressure and traction of each",
                     fmt::join(load_names(true), ", "))},
        {"force", K::Vector, D::Force, false,
         "total, spread as uniform traction; with `at` through that point"},
@@ -295,12 +305,12 @@ std::vector<std::string> with_sides(std::vector<std::string> known) {
 
 }  // namespace
 
-std::string surface_on(CaseContext& context, const CaseTable& table,
-                       const case_data::Case& result, const char* key) {
-  std::string surface = table.text(key).value_or("");
-  if (!table.has(key)) {
-    return surface;
-  }
+namespace {
+
+/// The surface of that name; notes one that nothing can act on.
+std::string known_surface(CaseContext& context, const CaseTable& table,
+                          const case_data::Case& result, const char* key,
+                          std::string surface) {
   const std::vector<std::string> known = case_data::surface_names(result);
   surface = without_side(surface, known);
   int bodies = 0;
@@ -327,6 +337,30 @@ std::string surface_on(CaseContext& context, const CaseTable& table,
                     surface, bodies == 0 ? "body" : "material, only voids"));
   }
   return surface;
+}
+
+}  // namespace
+
+std::string surface_on(CaseContext& context, const CaseTable& table,
+                       const case_data::Case& result, const char* key) {
+  const std::string surface = table.text(key).value_or("");
+  return table.has(key) ? known_surface(context, table, result, key, surface)
+                        : surface;
+}
+
+loads::Surfaces surfaces_on(CaseContext& context, const CaseTable& table,
+                            const case_data::Case& result) {
+  loads::Surfaces surfaces;
+  for (const std::string& name : table.name_or_names("on")) {
+    std::string surface = known_surface(context, table, result, "on", name);
+    if (std::find(surfaces.begin(), surfaces.end(), surface) !=
+        surfaces.end()) {
+      note(context, table, "on", fmt::format("has '{}' twice", name));
+    } else {
+      surfaces.push_back(std::move(surface));
+    }
+  }
+  return surfaces;
 }
 
 void read_load_cases(CaseContext& context, const toml::table& root,

@@ -112,7 +112,8 @@ std::vector<TableSpec> make_tables() {
        false,
        N::Optional,
        "A surface that is held, by fix or by springs",
-       {{"on", K::Name, D::None, true, "the surface that is held"},
+       {{"on", K::NameOrNames, D::None, true,
+         "the surface that is held, or a list of them"},
         {"fix", K::Text, D::None, false,
          "components held at 0, some of \"xyz\"; \"normal\": slides; "
          "\"symmetry\": the same, and the surface must be plane"},

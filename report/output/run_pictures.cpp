@@ -80,20 +80,22 @@ void add_supports(const loads::LoadCase& load_case, picture::PictureJob& job) {
 void add_forces(const loads::LoadCase& load_case, const UnitSystem& units,
                 picture::PictureJob& job) {
   using Kind = picture::PictureLoadKind;
-  const auto add = [&](const std::string& surface, const Vec3& direction,
+  const auto add = [&](const loads::Surfaces& surfaces, const Vec3& direction,
                        Kind kind, const std::string& label) {
-    if (direction.norm() > 0.0) {
-      job.loads.push_back({surface, direction, label, kind});
+    for (const std::string& surface : surfaces) {
+      if (direction.norm() > 0.0) {
+        job.loads.push_back({surface, direction, label, kind});
+      }
     }
   };
   for (const loads::RemoteLoad& load : load_case.remote_loads) {
-    add(load.surface, load.force, Kind::Force,
+    add(load.surfaces, load.force, Kind::Force,
         load_label(load.force.norm(), units.force));
-    add(load.surface, load.moment, Kind::Moment,
+    add(load.surfaces, load.moment, Kind::Moment,
         moment_label(load.moment.norm(), units));
   }
   for (const loads::SurfaceForce& force : load_case.forces) {
-    add(force.surface, force.total, Kind::Force,
+    add(force.surfaces, force.total, Kind::Force,
         load_label(force.total.norm(), units.force));
   }
   // Of fields the arrows say where, the label that it changes.

@@ -168,14 +168,18 @@ Json page_loads(const case_data::Case& input,
           {{"on", on}, {"kind", kind}, {"vector", std::move(vector)}});
     };
     for (const loads::SurfaceForce& force : load_case.forces) {
-      add(force.surface, "force", vector_json(force.total));
+      for (const std::string& on : force.surfaces) {
+        add(on, "force", vector_json(force.total));
+      }
     }
     for (const loads::RemoteLoad& load : load_case.remote_loads) {
-      if (load.force.norm() > 0.0) {
-        add(load.surface, "force", vector_json(load.force));
-      }
-      if (load.moment.norm() > 0.0) {
-        add(load.surface, "moment", vector_json(load.moment));
+      for (const std::string& on : load.surfaces) {
+        if (load.force.norm() > 0.0) {
+          add(on, "force", vector_json(load.force));
+        }
+        if (load.moment.norm() > 0.0) {
+          add(on, "moment", vector_json(load.moment));
+        }
       }
     }
     for (const loads::SurfacePressure& pressure : load_case.pressures) {

@@ -148,6 +148,17 @@ TEST(DesignGradient, IsExactUnderEveryKindOfLoad) {
   expect_exact(text, VectorX::Zero(3));
 }
 
+TEST(DesignGradient, IsExactUnderLoadsOfSeveralSurfaces) {
+  expect_exact(
+      changed(every_response(),
+              "[{ on = \"head_pad\", force = [\"load\", 0, 0] }]",
+              "[{ on = [\"head_pad\", \"skin\"], force = [\"load\", \"30 * "
+              "lean\", 0], at = [\"lean\", 5, 80], moment = [0, 1e4, 0] },\n"
+              "  { on = [\"head_pad\", \"skin\"], force = [0, \"load * fill\", "
+              "0] }]"),
+      Vec3(1.5, -4.0, 0.07));
+}
+
 TEST(DesignGradient, IsExactWhereMaterialsFollowTheDesign) {
   std::string text = changed(
       every_response(), "[{ on = \"head_pad\", force = [\"load\", 0, 0] }]",

@@ -83,6 +83,33 @@ TEST(CaseLoads, EveryKindOfLoadIsRead) {
   EXPECT_EQ(load_case.temperature->reference, 20.0);
 }
 
+TEST(CaseLoads, SeveralSurfacesInOneEntry) {
+  std::string text = with_supports(
+      "[{ on = [\"foot_pad\", \"skin\"], fix = \"xy\" },\n"
+      "  { on = [\"foot_pad\", \"skin\"], normal_stiffness = 2 }]");
+  text = changed(text, kLoads,
+                 "[{ on = [\"head_pad\", \"skin\"], force = [1, 2, 3] },\n"
+                 "  { on = [\"head_pad\", \"skin\"], moment = [0, 0, 5], at = "
+                 "[0, 0, 90] },\n"
+                 "  { on = [\"head_pad\", \"skin\"], pressure = 3 },\n"
+                 "  { on = [\"head_pad\"], traction = [0, 0, \"x\"] }]");
+  const loads::LoadCase load_case = numbers_of(text).load_cases.at(0);
+  const loads::Surfaces both = {"head_pad", "skin"};
+  ASSERT_EQ(load_case.forces.size(), 1U);
+  EXPECT_EQ(load_case.forces[0].surfaces, both);
+  ASSERT_EQ(load_case.remote_loads.size(), 1U);
+  EXPECT_EQ(load_case.remote_loads[0].surfaces, both);
+  ASSERT_EQ(load_case.pressures.size(), 2U);
+  EXPECT_EQ(load_case.pressures[1].surface, "skin");
+  EXPECT_EQ(load_case.pressures[1].pressure, 3.0);
+  ASSERT_EQ(load_case.tractions.size(), 1U);
+  ASSERT_EQ(load_case.supports.size(), 2U);
+  EXPECT_EQ(load_case.supports[1].surface, "skin");
+  EXPECT_TRUE(load_case.supports[1].fix_y);
+  ASSERT_EQ(load_case.springs.size(), 2U);
+  EXPECT_EQ(load_case.springs[1].normal, 2.0);
+}
+
 TEST(CaseLoads, MaterialsAreIsotropicOrOrthotropic) {
   EXPECT_EQ(numbers_of(changed(strut(), "density = 2.8e-9",
                                "density = 2.8e-9\nthermal_expansion = 2e-5"))
@@ -141,6 +168,19 @@ INSTANTIATE_TEST_SUITE_P(
                            "3 }]"),
                 "52: load_cases.service.loads on 'head_pad' has force and "
                 "pressure; expected one of"},
+        Mistake{"TotalSpringsOnSeveral",
+                with_supports("[{ on = [\"foot_pad\", \"skin\"], "
+                              "normal_stiffness = 1, stiffness_of = \"total\" "
+                              "}]"),
+                "stiffness_of is total on several surfaces"},
+        Mistake{"SurfaceTwice",
+                with_loads("[{ on = [\"skin\", \"skin\"], pressure = 3 }]"),
+                "52: load_cases.service.loads.on has 'skin' twice"},
+        Mistake{"OneOfSeveralUnknown",
+                with_loads("[{ on = [\"skin\", \"skim\"], pressure = 3 }]"),
+                "did you mean 'skin'?"},
+        Mistake{"SurfaceIsANumber", with_loads("[{ on = 3, pressure = 3 }]"),
+                "expected a name, or a list of names"},
         Mistake{"PressureNowhere", with_loads("[{ pressure = 3 }]"),
                 "is a pressure and has no 'on'"},
         Mistake{"GravityOnASurface",
