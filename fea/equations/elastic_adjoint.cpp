@@ -8,8 +8,8 @@
 #include "fea/equations/elastic_operator.h"
 #include "fea/equations/elastic_system.h"
 #include "fea/equations/equilibrium_check.h"
+#include "fea/equations/held_solver.h"
 #include "fea/equations/kept_state.h"
-#include "fea/solver/conjugate_gradients.h"
 
 namespace meniscus::equations {
 
@@ -39,36 +39,6 @@ void check_right_hand_sides(const KeptState& state, const std::string& name,
   }
 }
 
-/// Of up to kMostColumns right-hand sides, by a factor in double precision
-/// where the preconditioner in single precision is lost.
-std::vector<solver::CgColumn> solve_columns(
-    const KeptState& state, const KeptState::Group& group,
-    const solver::BlockMatrix<double>& matrix,
-    const std::vector<VectorX>& right, std::vector<VectorX>& lambda) {
-  const auto solve_with = [&](const solver::Preconditioner& preconditioner) {
-    lambda.assign(right.size(), VectorX::Zero(right.front().size()));
-    return solver::conjugate_gradients({.pattern = state.table->pattern,
-                                        .matrix = matrix,
-                                        .preconditioner = preconditioner,
-                                        .freedom = group.restraints.freedom,
-                                        .tolerance = state.tolerance,
-                                        .max_iterations = state.max_iterations,
-                                        .monitor = *state.monitor},
-                                       right, lambda);
-  };
-  std::vector<solver::CgColumn> columns = solve_with(*group.preconditioner);
-  const bool lost = std::any_of(
-      columns.begin(), columns.end(), [](const solver::CgColumn& column) {
-        return column.end == solver::CgEnd::NotPositive;
-      });
-  if (lost &&
-      supports::free_unknowns(group.restraints) <= solver::kSecondChance) {
-    columns = solve_with(*solver::make_direct(state.table->pattern, matrix,
-                                              group.restraints.freedom));
-  }
-  return columns;
-}
-
 void finish_solution(const KeptState& state, const KeptState::Group& group,
                      const std::string& name, const VectorX& diagonal,
                      const VectorX& g, const VectorX& lambda,
@@ -77,7 +47,7 @@ void finish_solution(const KeptState& state, const KeptState::Group& group,
       {state.x, g,
        solver::internal_forces(*state.table, state.x, state.laws, lambda),
        supports::spring_forces(group.restraints.springs, lambda), lambda,
-       group.restraints.freedom, diagonal});
+       group.restraints, diagonal});
   result.lambda.push_back(to_mesh(*state.order, lambda));
   result.reactions.push_back(to_mesh(*state.order, equilibrium.reactions));
   result.iterations = std::max(result.iterations, column.iterations);
@@ -107,7 +77,8 @@ ElasticState& ElasticState::operator=(ElasticState&&) noexcept = default;
 KeptState ElasticSystem::keep(const TetMesh& mesh,
                               const std::vector<loads::LoadCase>& load_cases,
                               std::vector<element::ElasticLaw> laws,
-                              solver::BlockMatrix<double> matrix) const {
+                              solver::BlockMatrix<double> matrix,
+                              std::vector<PinMotions> pins) const {
   KeptState state{.table = &shared_->table,
                   .order = &base_.order,
                   .monitor = base_.options.monitor != nullptr
@@ -121,11 +92,13 @@ KeptState ElasticSystem::keep(const TetMesh& mesh,
                   .matrix = std::move(matrix),
                   .x = base_.solver_points(mesh)};
   state.groups.reserve(groups_.size());
-  for (const Group& group : groups_) {
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    const Group& group = groups_[g];
     state.groups.push_back(
         {.cases = group.cases,
          .restraints = supports::make_restraints(
              mesh, load_cases[group.cases.front()], base_.order),
+         .pins = std::move(pins[g]),
          .preconditioner = group.preconditioner.get()});
   }
   state.names.reserve(load_cases.size());
@@ -150,6 +123,13 @@ AdjointSolution solve_adjoint(const KeptState& state, int load_case,
   const solver::BlockMatrix<double>& matrix = plain ? state.matrix : sprung;
   const VectorX diagonal = solver::diagonal_of(matrix);
   AdjointSolution result;
+  HeldSolver solver({.pattern = state.table->pattern,
+                     .matrix = matrix,
+                     .preconditioner = *group.preconditioner,
+                     .restraints = group.restraints,
+                     .tolerance = state.tolerance,
+                     .max_iterations = state.max_iterations,
+                     .monitor = *state.monitor});
   const std::size_t count = right_hand_sides.size();
   for (std::size_t first = 0; first < count; first += solver::kMostColumns) {
     std::vector<VectorX> right;
@@ -158,10 +138,11 @@ AdjointSolution solve_adjoint(const KeptState& state, int load_case,
          k < std::min(first + solver::kMostColumns, count); ++k) {
       right.push_back(to_solver(*state.order, right_hand_sides[k]));
     }
-    std::vector<VectorX> lambda;
-    const std::vector<solver::CgColumn> columns =
-        solve_columns(state, group, matrix, right, lambda);
+    std::vector<VectorX> lambda(right.size(),
+                                VectorX::Zero(right.front().size()));
+    const std::vector<solver::CgColumn> columns = solver.solve(right, lambda);
     for (std::size_t k = 0; k < right.size(); ++k) {
+      release_pins(group.pins, solver, right[k], lambda[k]);
       finish_solution(state, group, name, diagonal, right[k], lambda[k],
                       columns[k], result);
     }

@@ -29,6 +29,25 @@ std::string cause(solver::CgEnd end, const solver::CgColumn& column, int most) {
   }
 }
 
+/// What a design may not change.
+std::vector<loads::Support> without_numbers(
+    std::vector<loads::Support> supports) {
+  for (loads::Support& support : supports) {
+    support.displacement.reset();
+  }
+  return supports;
+}
+
+std::vector<loads::RigidPin> without_numbers(
+    std::vector<loads::RigidPin> pins) {
+  for (loads::RigidPin& pin : pins) {
+    pin.point.setZero();
+    pin.displacement.reset();
+    pin.rotation.reset();
+  }
+  return pins;
+}
+
 }  // namespace
 
 ElasticBase::ElasticBase(const TetMesh& mesh,
@@ -54,8 +73,9 @@ ElasticBase::ElasticBase(const TetMesh& mesh,
     throw MeshError("elasticity: a node position of the mesh is not finite");
   }
   for (const loads::LoadCase& load_case : load_cases) {
-    supports.push_back(load_case.supports);
+    supports.push_back(without_numbers(load_case.supports));
     springs.push_back(load_case.springs);
+    pins.push_back(without_numbers(load_case.pins));
     checked_forces(mesh, load_case, given);
   }
 }
@@ -75,8 +95,9 @@ void ElasticBase::check_same(
                     load_cases.size(), supports.size()));
   }
   for (std::size_t c = 0; c < load_cases.size(); ++c) {
-    if (load_cases[c].supports != supports[c] ||
-        load_cases[c].springs != springs[c]) {
+    if (without_numbers(load_cases[c].supports) != supports[c] ||
+        load_cases[c].springs != springs[c] ||
+        without_numbers(load_cases[c].pins) != pins[c]) {
       throw InvalidInput(fmt::format(
           "load case '{}': its supports differ from the base design's; build "
           "a new model for them",
@@ -195,7 +216,7 @@ void finish_solution(const ElasticBase& base, const solver::ElementTable& table,
   const Equilibrium equilibrium = check_equilibrium(
       {solved.x, solved.f, internal,
        supports::spring_forces(solved.restraints.springs, solved.u), solved.u,
-       solved.restraints.freedom, solved.diagonal});
+       solved.restraints, solved.diagonal, solved.enforced});
   result.displacements[c] = to_mesh(base.order, solved.u);
   result.reactions[c] = to_mesh(base.order, equilibrium.reactions);
   ElasticReport& report = result.report;

@@ -1,14 +1,14 @@
-/// What acts on a part and what holds it: plain data, by surface name.
+/// What acts on a part, with what holds it: plain data, by surface name.
 #pragma once
 
 #include <functional>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "core/types.h"
-#include "fea/element/local_axes.h"
+#include "fea/loads/support.h"
+#include "fea/loads/surfaces.h"
 
 namespace meniscus::loads {
 
@@ -22,52 +22,6 @@ using MatrixOfPlace = std::function<Mat3(const Vec3&)>;
 struct SlopedField {
   NumberOfPlace value;
   VectorOfPlace slope;
-};
-
-/// Surfaces that act as one: a name, or a list of them, each once.
-struct Surfaces : std::vector<std::string> {
-  using std::vector<std::string>::vector;
-  Surfaces(std::string one)  // NOLINT: a name is a list of one
-      : std::vector<std::string>{std::move(one)} {}
-  Surfaces(const char* one)  // NOLINT: the same
-      : std::vector<std::string>{one} {}
-  /// "lug_1", "lug_1 and lug_2", for messages.
-  std::string text() const;
-};
-
-enum class SupportKind {
-  Components,  // those that are fixed, along x, y, z or the support's axes
-  Normal,      // the surface slides: no displacement along its normal
-  Symmetry     // the same for a plane, which the surface must be
-};
-
-/// Fixes components of displacement on a surface. Where surfaces meet, a node
-/// is held along all their directions; normals that differ by no more than the
-/// mesh's own facets do count as one.
-struct Support {
-  std::string surface;
-  bool fix_x = false, fix_y = false, fix_z = false;  // of Components
-  SupportKind kind = SupportKind::Components;
-  std::optional<element::LocalAxes>
-      axes;  // x, y, z of Components are along these
-
-  bool operator==(const Support&) const = default;
-};
-
-enum class SpringMeasure { PerArea, Total };
-
-/// A bed of springs between a surface and the ground, spread consistently:
-/// traction -stiffness u. All stiffnesses are 0 or above.
-struct SpringBed {
-  std::string surface;
-  Vec3 components =
-      Vec3::Zero();     // along x, y, z or the axes [pressure/length]
-                        // per area, [force/length] in total
-  double normal = 0.0;  // along the surface's normal; the same
-  SpringMeasure measure = SpringMeasure::PerArea;
-  std::optional<element::LocalAxes> axes;
-
-  bool operator==(const SpringBed&) const = default;
 };
 
 /// A total force spread as uniform traction over all of the surfaces [force].
@@ -129,7 +83,11 @@ struct LoadCase {
   std::optional<Spin> spin;
   std::optional<Temperature> temperature;
   std::vector<SpringBed> springs;
+  std::vector<RigidPin> pins;
   VectorX nodal;  // forces at nodes, 3 per node; empty: none [force]
 };
+
+/// A support or a pin says at what displacement it holds, if only at 0 now.
+bool enforces(const LoadCase& load_case);
 
 }  // namespace meniscus::loads

@@ -170,6 +170,8 @@ void check_rates(const LoadCase& by, const LoadCase& rates) {
       by.pressures.size() != rates.pressures.size() ||
       by.tractions.size() != rates.tractions.size() ||
       by.remote_loads.size() != rates.remote_loads.size() ||
+      (!by.supports.empty() && by.supports.size() != rates.supports.size()) ||
+      (!by.pins.empty() && by.pins.size() != rates.pins.size()) ||
       (rates.nodal.size() != 0 && by.nodal.size() != rates.nodal.size())) {
     throw InvalidInput(fmt::format(
         "load case '{}': the rates of its loads differ from them in number",
@@ -243,6 +245,22 @@ double temperature_rate(const LoadGradient& gradient, const LoadCase& rates) {
   return sum;
 }
 
+double enforced_rate(const LoadCase& by, const LoadCase& rates) {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < by.supports.size(); ++k) {
+    sum += value_of(by.supports[k].displacement)
+               .dot(value_of(rates.supports[k].displacement));
+  }
+  for (std::size_t k = 0; k < by.pins.size(); ++k) {
+    const RigidPin& d = by.pins[k];
+    const RigidPin& rate = rates.pins[k];
+    sum += d.point.dot(rate.point) +
+           value_of(d.displacement).dot(value_of(rate.displacement)) +
+           value_of(d.rotation).dot(value_of(rate.rotation));
+  }
+  return sum;
+}
+
 }  // namespace
 
 LoadGradient load_gradient(const TetMesh& mesh,
@@ -293,7 +311,7 @@ void add_temperature_gradient(const TetMesh& mesh, const LoadCase& load_case,
 double load_rate(const LoadGradient& gradient, const LoadCase& rates) {
   const LoadCase& by = gradient.by_number;
   check_rates(by, rates);
-  double sum = by.gravity.dot(rates.gravity);
+  double sum = by.gravity.dot(rates.gravity) + enforced_rate(by, rates);
   if (rates.nodal.size() != 0) {
     sum += by.nodal.dot(rates.nodal);
   }

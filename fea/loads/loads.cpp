@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "core/error.h"
 #include "fea/element/face_points.h"
@@ -104,10 +103,6 @@ void add_remote(const TetMesh& mesh, const LoadCase& load_case,
 }
 
 }  // namespace
-
-std::string Surfaces::text() const {
-  return fmt::format("{}", fmt::join(*this, " and "));
-}
 
 SurfaceWeights surface_weights(const TetMesh& mesh, const Surfaces& surfaces) {
   SurfaceWeights result;

@@ -127,8 +127,8 @@ void check_inner_surfaces(const Case& input, CaseProblems& problems) {
         look("load", surface, load.line);
       }
     }
-    for (const loads::Support& support : load_case.supports) {
-      look("support", support.surface, load_case.line);
+    for (const SupportEntry& entry : load_case.supports) {
+      look("support", entry.support.surface, entry.line);
     }
     for (const loads::SpringBed& springs : load_case.springs) {
       look("spring bed", springs.surface, load_case.line);

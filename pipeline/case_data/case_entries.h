@@ -168,9 +168,16 @@ enum class LoadKind {
   Temperature
 };
 
+/// How surfaces take a force or a moment.
+enum class LoadPath {
+  Spread,  // without being stiffened
+  Rigid    // as one rigid body
+};
+
 /// What the kind does not need is empty.
 struct LoadEntry {
   LoadKind kind = LoadKind::Force;
+  LoadPath by = LoadPath::Spread;  // of forces and moments
   loads::Surfaces surfaces;
   QuantityVector vector;  // force, gravity, axis of spin
   QuantityVector moment;
@@ -181,10 +188,25 @@ struct LoadEntry {
   SourceLine line = 0;
 };
 
+/// The numbers of a support are here, not in its struct.
+struct SupportEntry {
+  loads::Support support;
+  std::optional<QuantityVector> displacement;
+  SourceLine line = 0;
+};
+
+struct PinEntry {
+  loads::RigidPin pin;
+  QuantityVector at;
+  std::optional<QuantityVector> displacement, rotation;
+  SourceLine line = 0;
+};
+
 struct LoadCaseEntry {
   std::string name;
-  std::vector<loads::Support> supports;
+  std::vector<SupportEntry> supports;
   std::vector<loads::SpringBed> springs;
+  std::vector<PinEntry> pins;  // that supports make; free ones are of loads
   std::vector<LoadEntry> loads;
   SourceLine line = 0;
 };

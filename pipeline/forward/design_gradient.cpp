@@ -7,6 +7,7 @@
 #include "fea/elastic/elastic_gradient.h"
 #include "fea/loads/load_rates.h"
 #include "fea/loads/material_rates.h"
+#include "fea/supports/enforced.h"
 #include "pipeline/case_data/case_values.h"
 #include "pipeline/forward/frozen_part.h"
 
@@ -172,12 +173,12 @@ void Adjoint::through_mesh(Backward& backward) const {
   ResponsePartials& partials = backward.partials;
   const auto load_case = static_cast<std::size_t>(entry(backward).load_case);
   if (backward.lambda.size() > 0) {
-    const Points state = elastic::residual_gradient(
-        fields.mesh, fields.inputs.materials,
-        fields.inputs.load_cases[load_case],
-        {fields.solution.displacements[load_case],
-         fields.solution.reactions[load_case], backward.lambda,
-         backward.adjoint_reactions});
+    const loads::AdjointPair pair{fields.solution.displacements[load_case],
+                                  fields.solution.reactions[load_case],
+                                  backward.lambda, backward.adjoint_reactions};
+    const Points state =
+        elastic::residual_gradient(fields.mesh, fields.inputs.materials,
+                                   fields.inputs.load_cases[load_case], pair);
     for (std::size_t i = 0; i < state.size(); ++i) {
       partials.by_nodes[i] += state[i];
     }
@@ -188,6 +189,9 @@ void Adjoint::through_mesh(Backward& backward) const {
     backward.loads =
         loads::load_gradient(fields.mesh, fields.inputs.materials,
                              fields.inputs.load_cases[load_case], by_forces);
+    supports::add_enforced_gradient(fields.mesh,
+                                    fields.inputs.load_cases[load_case], pair,
+                                    backward.loads->by_number);
     loads::add_temperature_gradient(fields.mesh,
                                     fields.inputs.load_cases[load_case],
                                     partials.by_temperature, *backward.loads);

@@ -66,10 +66,29 @@ std::string support_label(const loads::Support& support) {
   return label;
 }
 
+std::string pin_label(const loads::RigidPin& pin) {
+  std::string held;
+  std::string turns;
+  for (std::size_t k = 0; k < 3; ++k) {
+    held += pin.fix[k] ? std::string(1, "xyz"[k]) : "";
+    turns += pin.fix_rotation[k] ? std::string(1, "xyz"[k]) : "";
+  }
+  std::string label = "rigid";
+  label += held.empty() ? "" : ", held " + held;
+  label += turns.empty() ? "" : ", no turn about " + turns;
+  return label;
+}
+
 void add_supports(const loads::LoadCase& load_case, picture::PictureJob& job) {
   for (const loads::Support& support : load_case.supports) {
     job.supports.push_back(support.surface);
     job.support_labels.push_back(support_label(support));
+  }
+  for (const loads::RigidPin& pin : load_case.pins) {
+    for (const std::string& surface : pin.surfaces) {
+      job.supports.push_back(surface);
+      job.support_labels.push_back(pin_label(pin));
+    }
   }
   for (const loads::SpringBed& bed : load_case.springs) {
     job.supports.push_back(bed.surface);

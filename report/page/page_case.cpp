@@ -191,6 +191,13 @@ Json page_loads(const case_data::Case& input,
     for (const loads::Support& support : load_case.supports) {
       add(support.surface, "support", Json());
     }
+    for (const loads::RigidPin& pin : load_case.pins) {
+      for (const std::string& on : pin.surfaces) {
+        if (pin.holds()) {
+          add(on, "support", Json());
+        }
+      }
+    }
     for (const loads::SpringBed& bed : load_case.springs) {
       add(bed.surface, "spring", Json());
     }

@@ -110,6 +110,42 @@ TEST(CaseLoads, SeveralSurfacesInOneEntry) {
   EXPECT_EQ(load_case.springs[1].normal, 2.0);
 }
 
+TEST(CaseLoads, RigidPinsAndEnforcedDisplacements) {
+  std::string text = with_supports(
+      "[{ on = \"skin\", fix = \"xz\", displacement = [\"foot / 50\", 0, "
+      "\"1 cm\"] },\n"
+      "  { on = [\"foot_pad\"], by = \"rigid\", fix = \"xyz\", fix_rotation = "
+      "\"xz\", at = [0, 0, \"-foot\"], rotation = [\"load / 1e6\", 0, 0] }]");
+  text =
+      changed(text, kLoads,
+              "[{ on = \"head_pad\", by = \"rigid\", force = [1, 2, 3], at = "
+              "[0, 0, 90] },\n"
+              "  { on = \"head_pad\", by = \"rigid\", moment = [4, 0, 0] },\n"
+              "  { on = \"foot_pad\", by = \"rigid\", force = [0, 5, 0] }]");
+  const loads::LoadCase load_case = numbers_of(text).load_cases.at(0);
+  ASSERT_EQ(load_case.supports.size(), 1U);
+  EXPECT_EQ(load_case.supports[0].displacement, Vec3(0.5, 0, 10));
+  ASSERT_EQ(load_case.pins.size(), 2U);  // loads join what they have in common
+  const loads::RigidPin& foot = load_case.pins[0];
+  EXPECT_EQ(foot.surfaces, loads::Surfaces("foot_pad"));
+  EXPECT_EQ(foot.fix, (std::array<bool, 3>{true, true, true}));
+  EXPECT_EQ(foot.fix_rotation, (std::array<bool, 3>{true, false, true}));
+  EXPECT_EQ(foot.point, Vec3(0, 0, -25));
+  EXPECT_EQ(foot.rotation, Vec3(1e-3, 0, 0));
+  EXPECT_FALSE(foot.displacement);
+  EXPECT_FALSE(load_case.pins[1].holds());
+  EXPECT_EQ(load_case.remote_loads.size(), 2U);
+  EXPECT_EQ(load_case.forces.size(), 1U);
+}
+
+TEST(CaseLoads, ADisplacementIsALoad) {
+  const std::string moved = changed(
+      with_supports("[{ on = \"foot_pad\", fix = \"xyz\" }, { on = "
+                    "\"head_pad\", fix = \"z\", displacement = [0, 0, 0.1] }]"),
+      std::string("loads = ") + kLoads, "");
+  EXPECT_TRUE(numbers_of(moved).load_cases.at(0).forces.empty());
+}
+
 TEST(CaseLoads, MaterialsAreIsotropicOrOrthotropic) {
   EXPECT_EQ(numbers_of(changed(strut(), "density = 2.8e-9",
                                "density = 2.8e-9\nthermal_expansion = 2e-5"))
@@ -181,6 +217,44 @@ INSTANTIATE_TEST_SUITE_P(
                 "did you mean 'skin'?"},
         Mistake{"SurfaceIsANumber", with_loads("[{ on = 3, pressure = 3 }]"),
                 "expected a name, or a list of names"},
+        Mistake{"PinByNodesToo",
+                with_loads("[{ on = [\"foot_pad\", \"head_pad\"], by = "
+                           "\"rigid\", force = [1, 0, 0] }]"),
+                "51: surface 'foot_pad' is of a rigid pin of load case "
+                "'service' and held by nodes"},
+        Mistake{"TwoPins",
+                with_loads("[{ on = [\"skin\", \"head_pad\"], by = \"rigid\", "
+                           "force = [1, 0, 0] }, { on = \"skin\", by = "
+                           "\"rigid\", force = [1, 0, 0] }]"),
+                "surface 'skin' is of two rigid pins of load case 'service'"},
+        Mistake{"RigidSupportNowhere",
+                with_supports("[{ on = \"foot_pad\", by = \"rigid\", fix = "
+                              "\"xyz\" }]"),
+                "is rigid and has no 'at'"},
+        Mistake{"RotationOfNodes",
+                with_supports("[{ on = \"foot_pad\", fix = \"xyz\", "
+                              "fix_rotation = \"x\" }]"),
+                "fix_rotation does not belong to a support by nodes"},
+        Mistake{"DisplacementAlongNormals",
+                with_supports("[{ on = \"foot_pad\", fix = \"normal\", "
+                              "displacement = [1, 0, 0] }]"),
+                "displacement does not belong to fix = \"normal\""},
+        Mistake{"DisplacementOfSprings",
+                with_supports("[{ on = \"foot_pad\", normal_stiffness = 1, "
+                              "displacement = [1, 0, 0] }]"),
+                "displacement does not belong to springs"},
+        Mistake{"DisplacementOfWhatIsFree",
+                with_supports("[{ on = \"foot_pad\", fix = \"xy\", "
+                              "displacement = [0, 0, 0.2] }]"),
+                "must be 0 where fix does not hold that component"},
+        Mistake{"ByWhat",
+                with_loads("[{ on = \"head_pad\", by = \"rigit\", force = "
+                           "[1, 0, 0] }]"),
+                "did you mean 'rigid'?"},
+        Mistake{"PressureByAPin",
+                with_loads("[{ on = \"head_pad\", by = \"rigid\", pressure = "
+                           "3 }]"),
+                "by does not belong to a pressure"},
         Mistake{"PressureNowhere", with_loads("[{ pressure = 3 }]"),
                 "is a pressure and has no 'on'"},
         Mistake{"GravityOnASurface",
