@@ -88,12 +88,12 @@ struct DeckSprings {
 struct DeckStep {
   std::string name;
   std::vector<DeckSupport> supports;
-  std::vector<DeckPinSupport> pins;  // one per pin of the deck
-  VectorX nodal_forces;              // [force], 3 per node, or empty
+  VectorX nodal_forces;  // [force], 3 per node, or empty
   std::vector<DeckPressure> pressures;
   Vec3 gravity = Vec3::Zero();  // force per mass [length/time^2]
   std::optional<DeckSpin> spin;
-  VectorX temperature_change;  // one per node, or empty [temperature]
+  VectorX temperature_change;        // one per node, or empty [temperature]
+  std::vector<DeckPinSupport> pins;  // one per pin of the deck
 };
 
 struct AnalysisDeck {

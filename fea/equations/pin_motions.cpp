@@ -61,11 +61,15 @@ void release_pins(const PinMotions& motions, const HeldSolver& solver,
   }
 }
 
-void hold_pins(const PinMotions& motions, const supports::Restraints& pins,
-               const Points& x, VectorX& u) {
+void hold_pins(const PinMotions& motions,
+               const supports::Restraints& restraints, const Points& x,
+               VectorX& u) {
+  if (motions.Z.empty()) {
+    return;
+  }
   std::size_t next = 0;
   const VectorX given = u;
-  for (const supports::PinFrame& pin : pins.pins) {
+  for (const supports::PinFrame& pin : restraints.pins) {
     const supports::PinMotion near = supports::motion_of(pin, x, given);
     for (int k = 0; k < 6; ++k) {
       if (!pin.fixed[k]) {

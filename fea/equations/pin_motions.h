@@ -27,8 +27,9 @@ void release_pins(const PinMotions& motions, const HeldSolver& solver,
 
 /// What release_pins would have made of `u`, taken off: a start with the
 /// pins' nodes held for a solution near to u. `x`: as above.
-void hold_pins(const PinMotions& motions, const supports::Restraints& pins,
-               const Points& x, VectorX& u);
+void hold_pins(const PinMotions& motions,
+               const supports::Restraints& restraints, const Points& x,
+               VectorX& u);
 
 /// The one that did not converge, or took longer.
 solver::CgColumn worse_of(const solver::CgColumn& a, const solver::CgColumn& b);

@@ -56,6 +56,17 @@ struct RemoteLoad {
   Vec3 moment = Vec3::Zero();  // beside the force's own [force length]
 };
 
+/// A force that a round pin presses into its bores without friction, as a
+/// cosine over the half that it is pressed against (bearing_load.h); what it
+/// has along the axis is spread evenly. Surfaces share it as the pressures
+/// balance: with a point about it, else by area.
+struct BearingLoad {
+  Surfaces surfaces;
+  Vec3 force = Vec3::Zero();       // not 0 [force]
+  std::optional<Vec3> point = {};  // on the axis [length]
+  std::optional<Vec3> axis = {};   // any length but 0; else the surfaces' own
+};
+
 /// Centrifugal forces, as seen from a part that turns steadily.
 struct Spin {
   Vec3 point = Vec3::Zero();  // on the axis [length]
@@ -79,6 +90,7 @@ struct LoadCase {
   std::vector<SurfacePressure> pressures;
   std::vector<SurfaceTraction> tractions;
   std::vector<RemoteLoad> remote_loads;
+  std::vector<BearingLoad> bearings;
   Vec3 gravity = Vec3::Zero();  // force per mass [length/time^2]
   std::optional<Spin> spin;
   std::optional<Temperature> temperature;

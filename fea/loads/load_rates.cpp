@@ -7,6 +7,7 @@
 #include "fea/element/element_sweep.h"
 #include "fea/element/face_points.h"
 #include "fea/element/surface_faces.h"
+#include "fea/loads/bearing_load.h"
 #include "fea/loads/load_checks.h"
 #include "fea/loads/loads.h"
 #include "fea/loads/remote_gradient.h"
@@ -78,6 +79,11 @@ void add_surface_loads(const TetMesh& mesh, const LoadCase& load_case,
     const RemoteGradient by = remote_gradient(mesh, load, v, nullptr);
     out.by_number.remote_loads.push_back(
         {load.surfaces, by.by_point, by.by_force, by.by_moment});
+  }
+  for (const BearingLoad& load : load_case.bearings) {
+    const BearingGradient by = bearing_gradient(mesh, load, v, nullptr);
+    out.by_number.bearings.push_back(
+        {load.surfaces, by.by_force, by.by_point, by.by_axis});
   }
 }
 
@@ -170,6 +176,7 @@ void check_rates(const LoadCase& by, const LoadCase& rates) {
       by.pressures.size() != rates.pressures.size() ||
       by.tractions.size() != rates.tractions.size() ||
       by.remote_loads.size() != rates.remote_loads.size() ||
+      by.bearings.size() != rates.bearings.size() ||
       (!by.supports.empty() && by.supports.size() != rates.supports.size()) ||
       (!by.pins.empty() && by.pins.size() != rates.pins.size()) ||
       (rates.nodal.size() != 0 && by.nodal.size() != rates.nodal.size())) {
@@ -325,6 +332,13 @@ double load_rate(const LoadGradient& gradient, const LoadCase& rates) {
     const RemoteLoad& rate = rates.remote_loads[k];
     sum += d.point.dot(rate.point) + d.force.dot(rate.force) +
            d.moment.dot(rate.moment);
+  }
+  for (std::size_t k = 0; k < by.bearings.size(); ++k) {
+    const BearingLoad& d = by.bearings[k];
+    const BearingLoad& rate = rates.bearings[k];
+    sum += d.force.dot(rate.force) +
+           value_of(d.point).dot(value_of(rate.point)) +
+           value_of(d.axis).dot(value_of(rate.axis));
   }
   if (by.spin && rates.spin) {
     sum += by.spin->point.dot(rates.spin->point) +

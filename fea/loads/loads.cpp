@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "fea/element/face_points.h"
 #include "fea/element/surface_faces.h"
+#include "fea/loads/bearing_load.h"
 #include "fea/loads/body_loads.h"
 #include "fea/loads/load_checks.h"
 #include "fea/loads/remote_load.h"
@@ -158,6 +159,9 @@ VectorX nodal_forces(const TetMesh& mesh, const LoadCase& load_case,
   }
   for (const RemoteLoad& load : load_case.remote_loads) {
     add_remote(mesh, load_case, load, f);
+  }
+  for (const BearingLoad& load : load_case.bearings) {
+    add_bearing_forces(mesh, load, f);
   }
   add_body_forces(mesh, load_case, materials, f);
   add_thermal_forces(mesh, load_case, materials, f);

@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "fea/element/face_points.h"
 #include "fea/element/surface_faces.h"
+#include "fea/loads/bearing_load.h"
 #include "fea/loads/load_checks.h"
 #include "fea/loads/loads.h"
 #include "fea/loads/remote_gradient.h"
@@ -158,6 +159,9 @@ void add_surface_load_gradient(const TetMesh& mesh,
   }
   for (const loads::RemoteLoad& load : load_case.remote_loads) {
     loads::remote_gradient(mesh, load, v, &gradient);
+  }
+  for (const loads::BearingLoad& load : load_case.bearings) {
+    loads::bearing_gradient(mesh, load, v, &gradient);
   }
 }
 

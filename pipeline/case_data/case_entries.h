@@ -171,7 +171,8 @@ enum class LoadKind {
 /// How surfaces take a force or a moment.
 enum class LoadPath {
   Spread,  // without being stiffened
-  Rigid    // as one rigid body
+  Rigid,   // as one rigid body
+  Bearing  // pressed by a round pin; forces only
 };
 
 /// What the kind does not need is empty.
@@ -181,8 +182,10 @@ struct LoadEntry {
   loads::Surfaces surfaces;
   QuantityVector vector;  // force, gravity, axis of spin
   QuantityVector moment;
-  QuantityVector at;    // the remote point; on the axis of spin
-  PlaceQuantity place;  // pressure, temperature
+  QuantityVector at;                   // the remote point; on the axis of spin
+  bool has_at = false;                 // a bearing's may be left out
+  std::optional<QuantityVector> axis;  // of a bearing
+  PlaceQuantity place;                 // pressure, temperature
   std::array<PlaceQuantity, 3> traction;
   Quantity number;  // rate of spin, reference temperature
   SourceLine line = 0;

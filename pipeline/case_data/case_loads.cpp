@@ -85,6 +85,15 @@ loads::RigidPin pin_of(const PinEntry& entry, const CaseValues& values) {
 
 void add_load(const LoadEntry& load, const CaseValues& values,
               loads::LoadCase& result) {
+  if (load.by == LoadPath::Bearing) {
+    result.bearings.push_back(
+        {.surfaces = load.surfaces, .force = values.at(load.vector)});
+    if (load.has_at) {
+      result.bearings.back().point = values.at(load.at);
+    }
+    result.bearings.back().axis = value_of(load.axis, values);
+    return;
+  }
   if (load.by == LoadPath::Rigid) {
     add_pin(load.surfaces, result);
   }
@@ -211,6 +220,8 @@ bool is_loaded(const loads::LoadCase& load_case) {
   const auto& t = load_case.temperature;
   return has_weight(load_case) || moves_supports(load_case) ||
          (t && (t->field || t->value != t->reference)) ||
+         std::any_of(load_case.bearings.begin(), load_case.bearings.end(),
+                     [](const auto& b) { return b.force.norm() > 0.0; }) ||
          std::any_of(load_case.forces.begin(), load_case.forces.end(),
                      [](const auto& f) { return f.total.norm() > 0.0; }) ||
          std::any_of(

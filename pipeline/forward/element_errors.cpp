@@ -36,6 +36,7 @@ DualLoad dual_load(const EvaluationFields& fields,
   dual.pressures.clear();
   dual.tractions.clear();
   dual.remote_loads.clear();
+  dual.bearings.clear();
   dual.gravity.setZero();
   dual.spin.reset();
   dual.temperature.reset();

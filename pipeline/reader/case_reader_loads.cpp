@@ -207,7 +207,10 @@ struct LoadRow {
 
 const std::vector<LoadRow>& load_kinds() {
   static const std::vector<LoadRow> kinds = {
-      {"force", case_data::LoadKind::Force, true, {"at", "moment", "by"}},
+      {"force",
+       case_data::LoadKind::Force,
+       true,
+       {"at", "moment", "by", "axis"}},
       {"moment", case_data::LoadKind::Remote, true, {"at", "force", "by"}},
       {"pressure", case_data::LoadKind::Pressure, true, {}},
       {"traction", case_data::LoadKind::Traction, true, {}},
@@ -291,6 +294,24 @@ void check_load_keys(CaseContext& context, const CaseTable& table,
   }
 }
 
+case_data::LoadPath load_path(CaseContext& context, const CaseTable& table,
+                              const std::string& key) {
+  const std::string by = table.choice("by").value_or("spread");
+  if (by != "bearing") {
+    if (key == "force") {
+      refuse_foreign(context, table, {"axis"}, "a force that is " + by);
+    }
+    return by == "rigid" ? case_data::LoadPath::Rigid
+                         : case_data::LoadPath::Spread;
+  }
+  if (key != "force") {
+    note(context, table, "by",
+         "is bearing: a pin that presses carries a force, no moment alone");
+  }
+  refuse_foreign(context, table, {"moment"}, "a force that is bearing");
+  return case_data::LoadPath::Bearing;
+}
+
 void read_load(CaseContext& context, const CaseTable& table,
                const case_data::Case& result,
                case_data::LoadCaseEntry& load_case) {
@@ -305,8 +326,11 @@ void read_load(CaseContext& context, const CaseTable& table,
   if (key == "force" && (table.has("at") || table.has("moment"))) {
     load.kind = case_data::LoadKind::Remote;
   }
-  load.by = table.choice("by") == "rigid" ? case_data::LoadPath::Rigid
-                                          : case_data::LoadPath::Spread;
+  load.by = load_path(context, table, key);
+  load.has_at = table.has("at");
+  if (load.by == case_data::LoadPath::Bearing) {
+    load.axis = table.vector("axis");
+  }
   load.at = table.vector_or_zero("at");
   load.moment = table.vector_or_zero("moment");
   load.vector =
@@ -350,14 +374,17 @@ TableSpec load_table() {
         "axis"},
        {"by", K::Choice, D::None, false,
         "how the surfaces take force and moment: spread, without being "
-        "stiffened (when left out), or rigid, as one rigid body",
-        "spread|rigid"},
+        "stiffened (when left out); rigid, as one rigid body; or bearing, a "
+        "force that a round pin presses against one half of its bores",
+        "spread|rigid|bearing"},
        {"pressure", K::Place, D::Pressure, false, "positive into the material"},
        {"traction", K::PlaceVector, D::Pressure, false, "force per area"},
        {"gravity", K::Vector, D::Acceleration, false, "force per mass"},
        {"spin", K::Quantity, D::Rate, false,
         "angular velocity in radians per time"},
-       {"axis", K::Vector, std::nullopt, false, "of spin; any length but 0"},
+       {"axis", K::Vector, std::nullopt, false,
+        "of spin and of a bearing force (the bores' own when left out); any "
+        "length but 0"},
        {"temperature", K::Place, D::None, false,
         "of all bodies; they expand from the reference"},
        {"reference", K::Quantity, D::None, false,

@@ -136,6 +136,7 @@ void add_loads(const loads::LoadCase& load_case, const TetMesh& mesh,
   rest.forces = load_case.forces;
   rest.tractions = load_case.tractions;
   rest.remote_loads = load_case.remote_loads;
+  rest.bearings = load_case.bearings;
   for (const loads::SurfacePressure& p : load_case.pressures) {
     if (p.field) {
       rest.pressures.push_back(p);
@@ -144,7 +145,8 @@ void add_loads(const loads::LoadCase& load_case, const TetMesh& mesh,
     }
   }
   if (!rest.forces.empty() || !rest.tractions.empty() ||
-      !rest.remote_loads.empty() || !rest.pressures.empty()) {
+      !rest.remote_loads.empty() || !rest.bearings.empty() ||
+      !rest.pressures.empty()) {
     step.nodal_forces = loads::nodal_forces(mesh, rest);
   }
   step.gravity = load_case.gravity;

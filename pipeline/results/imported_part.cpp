@@ -84,6 +84,7 @@ std::set<std::string> surfaces_used(const case_data::EvaluatedCase& numbers) {
     add(load_case.pressures);
     add(load_case.tractions);
     add_together(load_case.remote_loads);
+    add_together(load_case.bearings);
     add_together(load_case.pins);
     add(load_case.springs);
   }

@@ -113,6 +113,10 @@ void add_forces(const loads::LoadCase& load_case, const UnitSystem& units,
     add(load.surfaces, load.moment, Kind::Moment,
         moment_label(load.moment.norm(), units));
   }
+  for (const loads::BearingLoad& load : load_case.bearings) {
+    add(load.surfaces, load.force, Kind::Force,
+        load_label(load.force.norm(), units.force));
+  }
   for (const loads::SurfaceForce& force : load_case.forces) {
     add(force.surfaces, force.total, Kind::Force,
         load_label(force.total.norm(), units.force));

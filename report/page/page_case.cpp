@@ -172,6 +172,11 @@ Json page_loads(const case_data::Case& input,
         add(on, "force", vector_json(force.total));
       }
     }
+    for (const loads::BearingLoad& load : load_case.bearings) {
+      for (const std::string& on : load.surfaces) {
+        add(on, "force", vector_json(load.force));
+      }
+    }
     for (const loads::RemoteLoad& load : load_case.remote_loads) {
       for (const std::string& on : load.surfaces) {
         if (load.force.norm() > 0.0) {

@@ -491,6 +491,22 @@ TEST(Pins, EigenvalueProblemsRefuseThemByName) {
                InvalidInput);
 }
 
+TEST(Pins, PetscRefusesThemAndEnforcedDisplacementsByName) {
+  const TetMesh mesh = shapes::brick({4.0, 1.0, 1.0}, 4, 2, 2);
+  const auto refused = [&](const loads::LoadCase& load_case, const char* what) {
+    EXPECT_THAT(
+        [&] {
+          elastic::ElasticModel(mesh, {parts::steel()}, {load_case},
+                                {.solver = equations::SolverKind::Distributed});
+        },
+        testing::ThrowsMessage<InvalidInput>(
+            AllOf(HasSubstr("petsc knows no"), HasSubstr(what),
+                  HasSubstr("analysis.solver"))));
+  };
+  refused(on_a_pin(), "rigid pins");
+  refused(stretched(), "enforced displacements");
+}
+
 TEST(Pins, MayNotChangeButInNumbers) {
   const TetMesh mesh = gradient_parts::block(1);
   const elastic::ElasticModel model(mesh, gradient_parts::materials(),

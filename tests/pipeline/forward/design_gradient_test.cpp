@@ -174,6 +174,17 @@ TEST(DesignGradient, IsExactUnderRigidPins) {
   expect_exact(text, Vec3(1.5, -4.0, 0.07));
 }
 
+TEST(DesignGradient, IsExactUnderBearingForces) {
+  const std::string text = changed(
+      every_response(), "[{ on = \"head_pad\", force = [\"load\", 0, 0] }]",
+      "[{ on = \"skin\", by = \"bearing\", force = [\"load\", \"30 * lean\", "
+      "\"-10 * lean\"] },\n"
+      "  { on = \"skin\", by = \"bearing\", force = [\"-load * fill\", 0, "
+      "0], at = [\"lean / 2\", 0, \"28 + lean\"], axis = [\"lean / 100\", 0, "
+      "1] }]");
+  expect_exact(text, VectorX::Zero(3));
+}
+
 TEST(DesignGradient, IsExactUnderEnforcedDisplacements) {
   const std::string text =
       changed(every_response(), "[{ on = \"foot_pad\", fix = \"xyz\" }]",

@@ -138,6 +138,25 @@ TEST(CaseLoads, RigidPinsAndEnforcedDisplacements) {
   EXPECT_EQ(load_case.forces.size(), 1U);
 }
 
+TEST(CaseLoads, BearingForces) {
+  const loads::LoadCase load_case =
+      numbers_of(
+          with_loads("[{ on = [\"skin\", \"head_pad\"], by = "
+                     "\"bearing\", force = [\"load\", 0, 0] },\n"
+                     "  { on = \"skin\", by = \"bearing\", force = [0, "
+                     "3, 0], at = [0, 0, \"foot\"], axis = [0, 0, 2] }]"))
+          .load_cases.at(0);
+  ASSERT_EQ(load_case.bearings.size(), 2U);
+  EXPECT_EQ(load_case.bearings[0].surfaces.size(), 2U);
+  EXPECT_EQ(load_case.bearings[0].force, Vec3(1000, 0, 0));
+  EXPECT_FALSE(load_case.bearings[0].point);
+  EXPECT_FALSE(load_case.bearings[0].axis);
+  EXPECT_EQ(load_case.bearings[1].point, Vec3(0, 0, 25));
+  EXPECT_EQ(load_case.bearings[1].axis, Vec3(0, 0, 2));
+  EXPECT_TRUE(load_case.forces.empty());
+  EXPECT_TRUE(load_case.pins.empty());
+}
+
 TEST(CaseLoads, ADisplacementIsALoad) {
   const std::string moved = changed(
       with_supports("[{ on = \"foot_pad\", fix = \"xyz\" }, { on = "
@@ -251,6 +270,18 @@ INSTANTIATE_TEST_SUITE_P(
                 with_loads("[{ on = \"head_pad\", by = \"rigit\", force = "
                            "[1, 0, 0] }]"),
                 "did you mean 'rigid'?"},
+        Mistake{"MomentOfABearing",
+                with_loads("[{ on = \"skin\", by = \"bearing\", moment = [1, "
+                           "0, 0], at = [0, 0, 0] }]"),
+                "by is bearing: a pin that presses carries a force"},
+        Mistake{"ForceAndMomentOfABearing",
+                with_loads("[{ on = \"skin\", by = \"bearing\", force = [1, 0, "
+                           "0], moment = [1, 0, 0], at = [0, 0, 0] }]"),
+                "moment does not belong to a force that is bearing"},
+        Mistake{"AxisOfASpreadForce",
+                with_loads("[{ on = \"skin\", force = [1, 0, 0], axis = [1, 0, "
+                           "0] }]"),
+                "axis does not belong to a force that is spread"},
         Mistake{"PressureByAPin",
                 with_loads("[{ on = \"head_pad\", by = \"rigid\", pressure = "
                            "3 }]"),
