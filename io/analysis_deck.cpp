@@ -65,6 +65,27 @@ void check_springs(const TetMesh& mesh, const DeckSprings& set,
   }
 }
 
+void check_pins(const TetMesh& mesh, const std::vector<DeckPin>& pins) {
+  const int count = static_cast<int>(mesh.nodes.size());
+  for (std::size_t k = 0; k < pins.size(); ++k) {
+    for (const int node : pins[k].nodes) {
+      if (node < 0 || node >= count) {
+        throw InvalidInput(
+            fmt::format("pin {} of the deck has node {}; the mesh has {} nodes",
+                        k + 1, node, count));
+      }
+    }
+  }
+}
+
+void check_pin_supports(const AnalysisDeck& deck, const DeckStep& step) {
+  if (step.pins.size() != deck.pins.size()) {
+    throw InvalidInput(fmt::format(
+        "step '{}' of the deck says how {} pins are held; the deck has {}",
+        step.name, step.pins.size(), deck.pins.size()));
+  }
+}
+
 }  // namespace
 
 void check_deck(const TetMesh& mesh, const AnalysisDeck& deck) {
@@ -83,7 +104,13 @@ void check_deck(const TetMesh& mesh, const AnalysisDeck& deck) {
     const bool on_springs =
         std::any_of(deck.springs.begin(), deck.springs.end(),
                     [s](const DeckSprings& set) { return acts_in(set, s); });
-    if (step.supports.empty() && deck.equations.empty() && !on_springs) {
+    check_pin_supports(deck, step);
+    const bool on_pins = std::any_of(
+        step.pins.begin(), step.pins.end(), [](const DeckPinSupport& pin) {
+          return pin.fixed != std::array<bool, 6>{};
+        });
+    if (step.supports.empty() && deck.equations.empty() && !on_springs &&
+        !on_pins) {
       throw InvalidInput(fmt::format(
           "step '{}' of the deck has no support; fix a surface", step.name));
     }
@@ -91,6 +118,7 @@ void check_deck(const TetMesh& mesh, const AnalysisDeck& deck) {
       check_support(mesh, support, step);
     }
   }
+  check_pins(mesh, deck.pins);
   for (std::size_t k = 0; k < deck.springs.size(); ++k) {
     check_springs(mesh, deck.springs[k], k + 1);
   }

@@ -2,6 +2,7 @@
 /// loads. What the writers of decks (CalculiX, Nastran) are given.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,11 +30,25 @@ struct DeckMaterial {
   Vec3 thermal_expansion = Vec3::Zero();       // [1/temperature]; 0: left out
 };
 
-/// Displacement components held at zero.
+/// Displacement components that are held.
 struct DeckSupport {
   std::string surface;     // its nodes; or, when empty, these:
   std::vector<int> nodes;  // from 0
   bool fix_x = false, fix_y = false, fix_z = false;
+  Vec3 displacement = Vec3::Zero();  // what these are held at [length]
+};
+
+/// Nodes that move as one rigid body in all steps.
+struct DeckPin {
+  std::vector<int> nodes;        // from 0
+  Vec3 point = Vec3::Zero();     // whose displacement its translation is
+  Mat3 axes = Mat3::Identity();  // of its motions, one a column
+};
+
+/// Motions of a pin that a step holds: three translations, three rotations.
+struct DeckPinSupport {
+  std::array<bool, 6> fixed = {};
+  std::array<double, 6> value = {};  // [length], [rad]
 };
 
 /// On element faces, positive into the solid [pressure].
@@ -77,7 +92,8 @@ struct DeckStep {
   std::vector<DeckPressure> pressures;
   Vec3 gravity = Vec3::Zero();  // force per mass [length/time^2]
   std::optional<DeckSpin> spin;
-  VectorX temperature_change;  // one per node, or empty [temperature]
+  VectorX temperature_change;        // one per node, or empty [temperature]
+  std::vector<DeckPinSupport> pins;  // one per pin of the deck
 };
 
 struct AnalysisDeck {
@@ -86,6 +102,7 @@ struct AnalysisDeck {
   std::vector<DeckStep> steps;
   std::vector<DeckEquation> equations;
   std::vector<DeckSprings> springs;
+  std::vector<DeckPin> pins;
 };
 
 /// Throws InvalidInput, naming surface, region or step, for what is missing or

@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "io/calculix_material.h"
 #include "io/calculix_names.h"
+#include "io/calculix_pins.h"
 #include "io/calculix_springs.h"
 #include "io/file_notes.h"
 
@@ -47,6 +48,7 @@ class DeckWriter {
     materials();
     equations();
     add(springs_text(mesh_, deck_.springs));
+    add(pins_text(mesh_, deck_));
     if (heated()) {  // steps give changes
       fmt::format_to(out(),
                      "*INITIAL CONDITIONS, TYPE=TEMPERATURE\nNALL, 0.\n");
@@ -184,7 +186,10 @@ class DeckWriter {
       for (const std::string& target : targets) {
         for (std::size_t c = 0; c < 3; ++c) {
           if (fixed[c]) {
-            fmt::format_to(out(), "{}, {}, {}\n", target, c + 1, c + 1);
+            const double at =
+                support.displacement[static_cast<Eigen::Index>(c)];
+            fmt::format_to(out(), "{}, {}, {}{}\n", target, c + 1, c + 1,
+                           at != 0.0 ? fmt::format(", {:.12e}", at) : "");
           }
         }
       }
@@ -254,6 +259,7 @@ class DeckWriter {
                    one_line(step.name), deck_.solver);
     boundary(step);
     add(springs_boundary_text(deck_.springs, number));
+    add(pins_boundary_text(mesh_, deck_, step));
     forces(step);
     temperatures(step);
     if (deck_.output == DeckOutput::Viewer ||

@@ -7,7 +7,8 @@
 /// rest, and the deck's head says which is which. Pressures are *DLOAD, nodal
 /// forces *CLOAD; springs are SPRING1 elements on nodes of their own, tied to
 /// the mesh by *EQUATION, that are held to the ground in the steps where they
-/// act; equations act in all steps.
+/// act; equations act in all steps, and so do rigid pins, each two nodes more
+/// (translations and rotations) with equations for its nodes.
 #pragma once
 
 #include <filesystem>

@@ -23,15 +23,28 @@ void equation(Out out, const DeckSprings::Spring& spring, int node) {
       }
     }
   }
-  constexpr std::size_t kPerLine = 4;  // terms that CalculiX reads of a line
-  fmt::format_to(out, "*EQUATION\n{}\n", terms.size());
-  for (std::size_t k = 0; k < terms.size(); ++k) {
-    const bool last = k + 1 == terms.size() || k % kPerLine == kPerLine - 1;
-    fmt::format_to(out, "{}{}", terms[k], last ? "\n" : ", ");
-  }
+  fmt::format_to(out, "{}", equation_text(terms));
 }
 
 }  // namespace
+
+std::string equation_text(const std::vector<std::string>& terms) {
+  constexpr std::size_t kPerLine = 4;  // terms that CalculiX reads of a line
+  std::string text = fmt::format("*EQUATION\n{}\n", terms.size());
+  for (std::size_t k = 0; k < terms.size(); ++k) {
+    const bool last = k + 1 == terms.size() || k % kPerLine == kPerLine - 1;
+    text += terms[k] + (last ? "\n" : ", ");
+  }
+  return text;
+}
+
+int spring_nodes(const std::vector<DeckSprings>& springs) {
+  std::size_t count = 0;
+  for (const DeckSprings& set : springs) {
+    count += set.springs.size();
+  }
+  return static_cast<int>(count);
+}
 
 std::string springs_text(const TetMesh& mesh,
                          const std::vector<DeckSprings>& springs) {

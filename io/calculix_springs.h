@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "io/calculix_inp.h"
 
@@ -15,5 +16,12 @@ std::string springs_text(const TetMesh& mesh,
 /// The lines of *BOUNDARY that let the step's springs act and no others.
 std::string springs_boundary_text(const std::vector<DeckSprings>& springs,
                                   std::size_t step);
+
+/// One *EQUATION of terms "node, component, factor"; the first depends on the
+/// others.
+std::string equation_text(const std::vector<std::string>& terms);
+
+/// Nodes that springs_text() numbers.
+int spring_nodes(const std::vector<DeckSprings>& springs);
 
 }  // namespace meniscus::io

@@ -1,6 +1,7 @@
 #include "io/nastran_bdf.h"
 
 #include <algorithm>
+#include <array>
 #include <numbers>
 
 #include <fmt/format.h>
@@ -66,6 +67,7 @@ class BulkWriter {
     }
     equations();
     springs();
+    pins();
     for (std::size_t s = 0; s < deck_.steps.size(); ++s) {
       step(deck_.steps[s], static_cast<int>(s) + 1);
     }
@@ -210,6 +212,36 @@ class BulkWriter {
     }
   }
 
+  /// A grid point whose six components move along the pin's axes, and the
+  /// nodes that follow it.
+  void pins() {
+    for (const DeckPin& pin : deck_.pins) {
+      const int point = next_point_++;
+      pins_.push_back(point);
+      const int system = static_cast<int>(pins_.size());
+      Fields frame = {id(system), "0"};
+      const std::array<Vec3, 3> corners = {
+          pin.point, pin.point + pin.axes.col(2), pin.point + pin.axes.col(0)};
+      for (const Vec3& x : corners) {
+        for (int i = 0; i < 3; ++i) {
+          frame.push_back(nastran_real(x[i]));
+        }
+      }
+      text_ += long_card("CORD2R", frame);
+      Fields fields = {id(point), "0"};
+      for (int i = 0; i < 3; ++i) {
+        fields.push_back(nastran_real(pin.point[i]));
+      }
+      fields.insert(fields.end(), {id(system), "0"});  // 0: GRDSET is not meant
+      text_ += long_card("GRID", fields);
+      Fields body = {id(next_element_++), id(point), "123"};
+      for (const int node : pin.nodes) {
+        body.push_back(id(node + 1));
+      }
+      text_ += short_card("RBE2", body);
+    }
+  }
+
   void step(const DeckStep& step, int k) {
     comment(fmt::format("load case '{}'", step.name));
     supports(step, k);
@@ -234,15 +266,27 @@ class BulkWriter {
 
   void supports(const DeckStep& step, int k) {
     for (const DeckSupport& support : step.supports) {
-      const std::string components = std::string(support.fix_x ? "1" : "") +
-                                     (support.fix_y ? "2" : "") +
-                                     (support.fix_z ? "3" : "");
+      const Vec3& at = support.displacement;
+      const std::string components =
+          std::string(support.fix_x && at.x() == 0.0 ? "1" : "") +
+          (support.fix_y && at.y() == 0.0 ? "2" : "") +
+          (support.fix_z && at.z() == 0.0 ? "3" : "");
       Fields fields = {id(k), components};
       for (const int node : supported_nodes(mesh_, support, step)) {
         fields.push_back(id(node + 1));
       }
       if (!components.empty()) {
         text_ += short_card("SPC1", fields);
+      }
+      moved(support, step, k);
+    }
+    for (std::size_t p = 0; p < step.pins.size(); ++p) {
+      for (std::size_t m = 0; m < 6; ++m) {
+        if (step.pins[p].fixed[m]) {
+          text_ += long_card("SPC",
+                             {id(k), id(pins_[p]), id(static_cast<int>(m) + 1),
+                              nastran_real(step.pins[p].value[m])});
+        }
       }
     }
     // A ground that is not held follows, and its spring pulls with nothing.
@@ -253,6 +297,21 @@ class BulkWriter {
           fields.push_back(id(ground));
         }
         text_ += short_card("SPC1", fields);
+      }
+    }
+  }
+
+  /// Components that are held elsewhere than at 0.
+  void moved(const DeckSupport& support, const DeckStep& step, int k) {
+    const std::array<bool, 3> fix = {support.fix_x, support.fix_y,
+                                     support.fix_z};
+    for (int c = 0; c < 3; ++c) {
+      if (!fix[static_cast<std::size_t>(c)] || support.displacement[c] == 0.0) {
+        continue;
+      }
+      for (const int node : supported_nodes(mesh_, support, step)) {
+        text_ += long_card("SPC", {id(k), id(node + 1), id(c + 1),
+                                   nastran_real(support.displacement[c])});
       }
     }
   }
@@ -309,6 +368,7 @@ class BulkWriter {
   int next_point_;
   int next_element_;
   std::vector<std::vector<int>> grounds_;  // of each set of springs
+  std::vector<int> pins_;                  // their grid points
   std::string text_;
 };
 

@@ -41,6 +41,15 @@ DistributedSystem::DistributedSystem(
                                    options.processes,
                                    equations::kMostProcesses));
   }
+  for (const loads::LoadCase& load_case : load_cases) {
+    if (!load_case.pins.empty() || loads::enforces(load_case)) {
+      throw InvalidInput(fmt::format(
+          "load case '{}': the solver petsc knows no {}; choose another solver "
+          "(analysis.solver)",
+          load_case.name,
+          load_case.pins.empty() ? "enforced displacements" : "rigid pins"));
+    }
+  }
   require_petsc();
   base_.order = solver::curve_order(base);
   table_ = solver::make_element_list(

@@ -6,6 +6,7 @@
 #include "fea/element/elastic_law.h"
 #include "fea/element/element_sweep.h"
 #include "fea/loads/body_load_gradient.h"
+#include "fea/supports/enforced.h"
 #include "fea/supports/support_gradient.h"
 #include "fea/supports/surface_load_gradient.h"
 
@@ -86,6 +87,7 @@ Points residual_gradient(const TetMesh& mesh,
   supports::add_spring_gradient(mesh, load_case, pair.displacement, pair.lambda,
                                 gradient);
   supports::add_support_gradient(mesh, load_case, pair, gradient);
+  supports::add_pin_gradient(mesh, load_case, pair, gradient);
   return gradient;
 }
 

@@ -109,11 +109,13 @@ equations::ElasticSolution ElasticModel::solve(
     return result;
   }
   const double seconds = timer.seconds();
-  result = system.solve(mesh, load_cases, regions, matrix, &impl_->base);
+  std::vector<equations::PinMotions> pins;
+  result = system.solve(mesh, load_cases, regions, matrix, &impl_->base, &pins);
   result.report.setup_seconds += seconds;
   if (keep != nullptr && !result.failure) {
-    keep->kept_ = std::make_unique<equations::KeptState>(system.keep(
-        mesh, load_cases, std::move(regions.laws), std::move(matrix)));
+    keep->kept_ = std::make_unique<equations::KeptState>(
+        system.keep(mesh, load_cases, std::move(regions.laws),
+                    std::move(matrix), std::move(pins)));
   }
   return result;
 }

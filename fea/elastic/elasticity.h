@@ -49,7 +49,8 @@ class ElasticModel {
   /// InvalidInput when elements, faces or names differ from the base's.
   equations::ElasticSolution solve(const TetMesh& mesh) const;
 
-  /// The same under other loads; names and supports must be the base's.
+  /// The same under other loads; names, supports and pins must be the base's,
+  /// but for the numbers that these enforce.
   equations::ElasticSolution solve(
       const TetMesh& mesh,
       const std::vector<loads::LoadCase>& load_cases) const;
@@ -84,9 +85,9 @@ class ElasticModel {
 
   /// The stiffness of `mesh`, held as in load case `load_case` (index), for
   /// eigenvalue problems; it must not outlive the model. Throws InvalidInput as
-  /// solve() does or for a distributed model, MeshError (inverted element) and
-  /// SolverError (supports that turned against each other). `materials`: one
-  /// per region; null: the base's.
+  /// solve() does, for rigid pins or for a distributed model, MeshError
+  /// (inverted element) and SolverError (supports that turned against each
+  /// other). `materials`: one per region; null: the base's.
   equations::ElasticOperator operator_at(
       const TetMesh& mesh, const std::vector<loads::LoadCase>& load_cases,
       int load_case, const std::vector<element::Material>* materials) const;

@@ -8,8 +8,8 @@
 #include "fea/equations/elastic_operator.h"
 #include "fea/equations/elastic_system.h"
 #include "fea/equations/equilibrium_check.h"
+#include "fea/equations/held_solver.h"
 #include "fea/equations/kept_state.h"
-#include "fea/solver/conjugate_gradients.h"
 
 namespace meniscus::equations {
 
@@ -42,36 +42,6 @@ void check_right_hand_sides(const KeptState& state,
   }
 }
 
-/// Of up to kMostColumns right-hand sides, by a factor in double precision
-/// where the preconditioner in single precision is lost.
-std::vector<solver::CgColumn> solve_columns(
-    const KeptState& state, const KeptState::Group& group,
-    const solver::BlockMatrix<double>& matrix,
-    const std::vector<VectorX>& right, std::vector<VectorX>& lambda) {
-  const auto solve_with = [&](const solver::Preconditioner& preconditioner) {
-    lambda.assign(right.size(), VectorX::Zero(right.front().size()));
-    return solver::conjugate_gradients({.pattern = state.table->pattern,
-                                        .matrix = matrix,
-                                        .preconditioner = preconditioner,
-                                        .freedom = group.restraints.freedom,
-                                        .tolerance = state.tolerance,
-                                        .max_iterations = state.max_iterations,
-                                        .monitor = *state.monitor},
-                                       right, lambda);
-  };
-  std::vector<solver::CgColumn> columns = solve_with(*group.preconditioner);
-  const bool lost = std::any_of(
-      columns.begin(), columns.end(), [](const solver::CgColumn& column) {
-        return column.end == solver::CgEnd::NotPositive;
-      });
-  if (lost &&
-      supports::free_unknowns(group.restraints) <= solver::kSecondChance) {
-    columns = solve_with(*solver::make_direct(state.table->pattern, matrix,
-                                              group.restraints.freedom));
-  }
-  return columns;
-}
-
 void finish_solution(const KeptState& state, const KeptState::Group& group,
                      const std::string& name, const VectorX& diagonal,
                      const VectorX& g, const VectorX& lambda,
@@ -81,7 +51,7 @@ void finish_solution(const KeptState& state, const KeptState::Group& group,
       {state.x, g,
        solver::internal_forces(*state.table, state.x, state.laws, lambda),
        supports::spring_forces(group.restraints.springs, lambda), lambda,
-       group.restraints.freedom, diagonal});
+       group.restraints, diagonal});
   result.lambda[at] = to_mesh(*state.order, lambda);
   result.reactions[at] = to_mesh(*state.order, equilibrium.reactions);
   result.iterations = std::max(result.iterations, column.iterations);
@@ -115,6 +85,13 @@ void solve_group(const KeptState& state, const KeptState::Group& group,
                                       springs);
   const solver::BlockMatrix<double>& matrix = plain ? state.matrix : sprung;
   const VectorX diagonal = solver::diagonal_of(matrix);
+  HeldSolver solver({.pattern = state.table->pattern,
+                     .matrix = matrix,
+                     .preconditioner = *group.preconditioner,
+                     .restraints = group.restraints,
+                     .tolerance = state.tolerance,
+                     .max_iterations = state.max_iterations,
+                     .monitor = *state.monitor});
   for (std::size_t first = 0; first < open.size();
        first += solver::kMostColumns) {
     std::vector<VectorX> right;
@@ -123,10 +100,11 @@ void solve_group(const KeptState& state, const KeptState::Group& group,
          k < std::min(first + solver::kMostColumns, open.size()); ++k) {
       right.push_back(to_solver(*state.order, right_hand_sides[open[k]]));
     }
-    std::vector<VectorX> lambda;
-    const std::vector<solver::CgColumn> columns =
-        solve_columns(state, group, matrix, right, lambda);
+    std::vector<VectorX> lambda(right.size(),
+                                VectorX::Zero(right.front().size()));
+    const std::vector<solver::CgColumn> columns = solver.solve(right, lambda);
     for (std::size_t k = 0; k < right.size(); ++k) {
+      release_pins(group.pins, solver, right[k], lambda[k]);
       const std::size_t at = open[first + k];
       finish_solution(state, group,
                       state.names[static_cast<std::size_t>(load_cases[at])],
@@ -145,7 +123,8 @@ ElasticState& ElasticState::operator=(ElasticState&&) noexcept = default;
 KeptState ElasticSystem::keep(const TetMesh& mesh,
                               const std::vector<loads::LoadCase>& load_cases,
                               std::vector<element::ElasticLaw> laws,
-                              solver::BlockMatrix<double> matrix) const {
+                              solver::BlockMatrix<double> matrix,
+                              std::vector<PinMotions> pins) const {
   KeptState state{.table = &shared_->table,
                   .order = &base_.order,
                   .monitor = base_.options.monitor != nullptr
@@ -159,11 +138,13 @@ KeptState ElasticSystem::keep(const TetMesh& mesh,
                   .matrix = std::move(matrix),
                   .x = base_.solver_points(mesh)};
   state.groups.reserve(groups_.size());
-  for (const Group& group : groups_) {
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    const Group& group = groups_[g];
     state.groups.push_back(
         {.cases = group.cases,
          .restraints = supports::make_restraints(
              mesh, load_cases[group.cases.front()], base_.order),
+         .pins = std::move(pins[g]),
          .preconditioner = group.preconditioner.get()});
   }
   state.names.reserve(load_cases.size());

@@ -29,18 +29,39 @@ std::string cause(solver::CgEnd end, const solver::CgColumn& column, int most) {
   }
 }
 
+/// What a design may not change.
+std::vector<loads::Support> without_numbers(
+    std::vector<loads::Support> supports) {
+  for (loads::Support& support : supports) {
+    support.displacement.reset();
+  }
+  return supports;
+}
+
+std::vector<loads::RigidPin> without_numbers(
+    std::vector<loads::RigidPin> pins) {
+  for (loads::RigidPin& pin : pins) {
+    pin.point.setZero();
+    pin.displacement.reset();
+    pin.rotation.reset();
+  }
+  return pins;
+}
+
 loads::LoadCase only_holds(const loads::LoadCase& load_case) {
   loads::LoadCase held;
-  held.supports = load_case.supports;
+  held.supports = without_numbers(load_case.supports);
   held.held_nodes = load_case.held_nodes;
   held.springs = load_case.springs;
   held.node_springs = load_case.node_springs;
+  held.pins = without_numbers(load_case.pins);
   return held;
 }
 
 bool held_alike(const loads::LoadCase& a, const loads::LoadCase& b) {
   return a.supports == b.supports && a.held_nodes == b.held_nodes &&
-         a.springs == b.springs && a.node_springs == b.node_springs;
+         a.springs == b.springs && a.node_springs == b.node_springs &&
+         a.pins == b.pins;
 }
 
 }  // namespace
@@ -88,7 +109,7 @@ void ElasticBase::check_same(
                     load_cases.size(), held.size()));
   }
   for (std::size_t c = 0; c < load_cases.size(); ++c) {
-    if (!held_alike(load_cases[c], held[c])) {
+    if (!held_alike(only_holds(load_cases[c]), held[c])) {
       throw InvalidInput(fmt::format(
           "load case '{}': its supports differ from the base design's; build "
           "a new model for them",
@@ -207,7 +228,7 @@ void finish_solution(const ElasticBase& base, const solver::ElementTable& table,
   const Equilibrium equilibrium = check_equilibrium(
       {solved.x, solved.f, internal,
        supports::spring_forces(solved.restraints.springs, solved.u), solved.u,
-       solved.restraints.freedom, solved.diagonal});
+       solved.restraints, solved.diagonal, solved.enforced});
   result.displacements[c] = to_mesh(base.order, solved.u);
   result.reactions[c] = to_mesh(base.order, equilibrium.reactions);
   ElasticReport& report = result.report;

@@ -26,8 +26,8 @@ struct ElasticBase {
               const std::vector<loads::LoadCase>& load_cases,
               const ElasticOptions& chosen);
 
-  /// Throws InvalidInput unless elements, faces, names and supports are the
-  /// base's.
+  /// Throws InvalidInput unless elements, faces, names, supports and pins are
+  /// the base's; what these are held at, and where pins' points are, may move.
   void check_same(const TetMesh& mesh,
                   const std::vector<loads::LoadCase>& load_cases) const;
 
@@ -83,6 +83,7 @@ struct SolvedCase {
   const std::vector<element::ElasticLaw>& laws;
   const supports::Restraints& restraints;
   const solver::CgColumn& column;
+  bool enforced = false;  // something is held at another place than 0
 };
 
 /// Puts displacement, reactions and figures into `result`; where the solver

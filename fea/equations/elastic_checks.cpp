@@ -52,13 +52,23 @@ void check_memory(const TetMesh& mesh, SolverKind solver) {
                  "eighth");
 }
 
+void refuse_pins(const loads::LoadCase& load_case) {
+  if (!load_case.pins.empty()) {
+    throw InvalidInput(fmt::format(
+        "load case '{}': natural frequencies and buckling factors do not know "
+        "rigid pins ('{}'); use a load case without one, the same force "
+        "spread (by = \"spread\"), or a support (fix) on the surface",
+        load_case.name, load_case.pins.front().surfaces.text()));
+  }
+}
+
 VectorX checked_forces(const TetMesh& mesh, const loads::LoadCase& load_case,
                        const std::vector<element::Material>& materials) {
   VectorX f = loads::nodal_forces(mesh, load_case, materials);
-  if (!(f.norm() > 0.0)) {
+  if (!(f.norm() > 0.0) && !loads::enforces(load_case)) {
     throw InvalidInput(fmt::format(
         "load case '{}' has no load: give a force, a pressure, gravity or a "
-        "temperature that is not 0",
+        "temperature that is not 0, or enforce a displacement",
         load_case.name));
   }
   return f;

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "fea/equations/elastic_checks.h"
 #include "fea/equations/elastic_system.h"
 
 namespace meniscus::equations {
@@ -40,6 +41,7 @@ ElasticOperator ElasticSystem::operator_at(
                                    load_cases.size()));
   }
   const loads::LoadCase& loads = load_cases[load_case];
+  refuse_pins(loads);
   supports::Restraints restraints =
       supports::make_restraints(mesh, loads, base_.order);
   if (!supports::alike(restraints, group->restraints)) {

@@ -5,10 +5,11 @@
 #include <fmt/format.h>
 
 #include "core/timer.h"
+#include "fea/equations/held_solver.h"
 #include "fea/loads/body_loads.h"
 #include "fea/solver/block_kernels.h"
-#include "fea/solver/conjugate_gradients.h"
 #include "fea/solver/corner_mesh.h"
+#include "fea/supports/enforced.h"
 
 namespace meniscus::equations {
 
@@ -149,7 +150,7 @@ std::optional<Failure> ElasticSystem::assemble(
 ElasticSolution ElasticSystem::solve(
     const TetMesh& mesh, const std::vector<loads::LoadCase>& load_cases,
     const RegionMaterials& regions, const solver::BlockMatrix<double>& matrix,
-    const ElasticSolution* start) const {
+    const ElasticSolution* start, std::vector<PinMotions>* pins) const {
   const Timer timer;
   ElasticSolution result;
   result.displacements.resize(load_cases.size());
@@ -159,9 +160,13 @@ ElasticSolution ElasticSystem::solve(
                                            : "p-multigrid";
   result.report.dofs = supports::free_unknowns(groups_.front().restraints);
   // Loads of all cases on the nodes of this mesh.
-  const std::vector<VectorX> f =
-      base_.solver_forces(mesh, load_cases, regions.materials);
-  const Points x = base_.solver_points(mesh);
+  const Design design{
+      .mesh = mesh,
+      .load_cases = load_cases,
+      .laws = regions.laws,
+      .start = start,
+      .x = base_.solver_points(mesh),
+      .f = base_.solver_forces(mesh, load_cases, regions.materials)};
   for (const Group& group : groups_) {
     // The projector P turns with the design, but must hold what the base held:
     // the preconditioner is that of the base.
@@ -180,15 +185,23 @@ ElasticSolution ElasticSystem::solve(
         plain ? solver::BlockMatrix<double>{}
               : supports::sprung_matrix(shared_->table.pattern, matrix,
                                         restraints.springs);
-    for (std::size_t first = 0; first < group.cases.size();
-         first += solver::kMostColumns) {
-      const std::size_t last =
-          std::min(first + solver::kMostColumns, group.cases.size());
-      solve_columns(group, restraints,
-                    {group.cases.begin() + static_cast<std::ptrdiff_t>(first),
-                     group.cases.begin() + static_cast<std::ptrdiff_t>(last)},
-                    x, f, load_cases, regions.laws, plain ? matrix : sprung,
-                    start, result);
+    HeldSolver solver({.pattern = shared_->table.pattern,
+                       .matrix = plain ? matrix : sprung,
+                       .preconditioner = *group.preconditioner,
+                       .restraints = restraints,
+                       .tolerance = base_.options.tolerance,
+                       .max_iterations = base_.options.max_iterations,
+                       .monitor = base_.options.monitor != nullptr
+                                      ? *base_.options.monitor
+                                      : silent_monitor(),
+                       .second_chance = multigrid_});
+    PinMotions motions = solve_group(design, group.cases,
+                                     plain ? matrix : sprung, solver, result);
+    if (solver.took_factor()) {
+      result.report.solver = "cholmod after multigrid";
+    }
+    if (pins != nullptr) {
+      pins->push_back(std::move(motions));
     }
   }
   // With temperatures the energy is int s : C^-1 : s / 2, not f . u / 2.
@@ -201,71 +214,54 @@ ElasticSolution ElasticSystem::solve(
   return result;
 }
 
-void ElasticSystem::solve_columns(
-    const Group& group, const supports::Restraints& restraints,
-    const std::vector<int>& cases, const Points& x,
-    const std::vector<VectorX>& f,
-    const std::vector<loads::LoadCase>& load_cases,
-    const std::vector<element::ElasticLaw>& laws,
-    const solver::BlockMatrix<double>& matrix, const ElasticSolution* start,
-    ElasticSolution& result) const {
-  Monitor& monitor = base_.options.monitor != nullptr ? *base_.options.monitor
-                                                      : silent_monitor();
+PinMotions ElasticSystem::solve_group(const Design& design,
+                                      const std::vector<int>& cases,
+                                      const solver::BlockMatrix<double>& matrix,
+                                      HeldSolver& solver,
+                                      ElasticSolution& result) const {
+  const ElasticSolution* start = design.start;
+  PinMotions pins = find_pin_motions(design.x, solver);
   // From the base solution or from 0, never from the call before: an
   // evaluation is a pure function of the design.
   std::vector<VectorX> right;
+  std::vector<VectorX> enforced;
   std::vector<VectorX> u;
   for (const int c : cases) {
-    right.push_back(f[c]);
+    right.push_back(design.f[c]);
     u.push_back(start != nullptr && !start->failure
                     ? to_solver(base_.order, start->displacements[c])
-                    : VectorX(VectorX::Zero(f[c].size())));
-  }
-  // Preconditioned conjugate gradients (Hestenes, Stiefel 1952).
-  const auto solve_with = [&](const solver::Preconditioner& preconditioner) {
-    return solver::conjugate_gradients(
-        {.pattern = shared_->table.pattern,
-         .matrix = matrix,
-         .preconditioner = preconditioner,
-         .freedom = restraints.freedom,
-         .tolerance = base_.options.tolerance,
-         .max_iterations = base_.options.max_iterations,
-         .monitor = monitor},
-        right, u);
-  };
-  std::vector<solver::CgColumn> columns = solve_with(*group.preconditioner);
-  // A direction of negative curvature means a cycle that is not positive: a
-  // factor in double precision takes over.
-  const bool lost = std::any_of(
-      columns.begin(), columns.end(), [](const solver::CgColumn& column) {
-        return column.end == solver::CgEnd::NotPositive;
-      });
-  if (lost && multigrid_ &&
-      supports::free_unknowns(restraints) <= solver::kSecondChance) {
-    // Single precision is lost on supports that hardly hold.
-    for (VectorX& v : u) {
-      v.setZero();
+                    : VectorX(VectorX::Zero(design.f[c].size())));
+    hold_pins(pins, solver.restraints(), design.x, u.back());
+    enforced.push_back(
+        supports::enforced_displacement(design.mesh, design.load_cases[c]));
+    if (enforced.back().size() != 0) {
+      enforced.back() = to_solver(base_.order, enforced.back());
+      right.back() -= solver.product(enforced.back());
     }
-    columns = solve_with(*solver::make_direct(shared_->table.pattern, matrix,
-                                              restraints.freedom));
-    result.report.solver = "cholmod after multigrid";
   }
+  const std::vector<solver::CgColumn> columns = solver.solve(right, u);
   // Reactions, balance and residual by elements; the diagonal bounds rounding.
   const VectorX diagonal = solver::diagonal_of(matrix);
   for (std::size_t k = 0; k < cases.size(); ++k) {
     const int c = cases[k];
+    if (enforced[k].size() != 0) {
+      u[k] += enforced[k];
+    }
+    release_pins(pins, solver, design.f[c], u[k]);
     finish_solution(base_, shared_->table,
                     {.load_case = c,
-                     .name = load_cases[c].name,
-                     .x = x,
-                     .f = f[c],
+                     .name = design.load_cases[c].name,
+                     .x = design.x,
+                     .f = design.f[c],
                      .u = u[k],
                      .diagonal = diagonal,
-                     .laws = laws,
-                     .restraints = restraints,
-                     .column = columns[k]},
+                     .laws = design.laws,
+                     .restraints = solver.restraints(),
+                     .column = worse_of(columns[k], pins.column),
+                     .enforced = enforced[k].size() != 0},
                     result);
   }
+  return pins;
 }
 
 }  // namespace meniscus::equations

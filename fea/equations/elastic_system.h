@@ -9,6 +9,7 @@
 #include "fea/equations/elastic_operator.h"
 #include "fea/equations/elastic_solution.h"
 #include "fea/equations/kept_state.h"
+#include "fea/equations/pin_motions.h"
 #include "fea/solver/assembly.h"
 #include "fea/solver/multigrid.h"
 #include "fea/solver/preconditioner.h"
@@ -32,18 +33,21 @@ class ElasticSystem {
                                   const std::vector<element::ElasticLaw>& laws,
                                   solver::BlockMatrix<double>& matrix) const;
 
-  /// Solves all load cases; `start`: a solution to begin from, or null.
+  /// Solves all load cases; `start`: a solution to begin from, or null. `pins`,
+  /// if not null, is given what keep() takes.
   ElasticSolution solve(const TetMesh& mesh,
                         const std::vector<loads::LoadCase>& load_cases,
                         const RegionMaterials& regions,
                         const solver::BlockMatrix<double>& matrix,
-                        const ElasticSolution* start) const;
+                        const ElasticSolution* start,
+                        std::vector<PinMotions>* pins = nullptr) const;
 
   /// What adjoints need of a design that was solved.
   KeptState keep(const TetMesh& mesh,
                  const std::vector<loads::LoadCase>& load_cases,
                  std::vector<element::ElasticLaw> laws,
-                 solver::BlockMatrix<double> matrix) const;
+                 solver::BlockMatrix<double> matrix,
+                 std::vector<PinMotions> pins) const;
 
   /// See ElasticModel::operator_at().
   ElasticOperator operator_at(
@@ -82,14 +86,18 @@ class ElasticSystem {
   void build_preconditioners(const TetMesh& base,
                              const std::vector<loads::LoadCase>& load_cases,
                              const solver::BlockMatrix<double>& matrix);
-  void solve_columns(const Group& group, const supports::Restraints& restraints,
-                     const std::vector<int>& cases, const Points& x,
-                     const std::vector<VectorX>& f,
-                     const std::vector<loads::LoadCase>& load_cases,
-                     const std::vector<element::ElasticLaw>& laws,
-                     const solver::BlockMatrix<double>& matrix,
-                     const ElasticSolution* start,
-                     ElasticSolution& result) const;
+  /// What the groups of one design share.
+  struct Design {
+    const TetMesh& mesh;
+    const std::vector<loads::LoadCase>& load_cases;
+    const std::vector<element::ElasticLaw>& laws;
+    const ElasticSolution* start;  // or null
+    Points x;                      // of solver's nodes [length]
+    std::vector<VectorX> f;        // of all load cases [force]
+  };
+  PinMotions solve_group(const Design& design, const std::vector<int>& cases,
+                         const solver::BlockMatrix<double>& matrix,
+                         HeldSolver& solver, ElasticSolution& result) const;
 
   ElasticBase base_;
   std::unique_ptr<Shared> shared_;

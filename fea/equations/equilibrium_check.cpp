@@ -1,6 +1,7 @@
 #include "fea/equations/equilibrium_check.h"
 
 #include <cmath>
+#include <vector>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
@@ -19,6 +20,18 @@ constexpr double kShortWaves = 1e4;
 /// supports): about 40 for a slender part, and more on fine meshes.
 constexpr double kCutMotion = 1e3;
 
+/// 1 on the nodes of pins that nothing but the part holds.
+std::vector<char> on_free_pins(const supports::Restraints& restraints) {
+  std::vector<char> marks(static_cast<std::size_t>(restraints.freedom.nodes),
+                          0);
+  for (const supports::PinFrame& pin : restraints.pins) {
+    for (const int node : pin.nodes) {
+      marks[node] = pin.is_free() ? 1 : 0;
+    }
+  }
+  return marks;
+}
+
 }  // namespace
 
 Equilibrium check_equilibrium(const EquilibriumInput& input) {
@@ -28,12 +41,16 @@ Equilibrium check_equilibrium(const EquilibriumInput& input) {
   double error = 0.0;
   double rounding = 0.0;
   std::size_t h = 0;
+  const solver::NodeFreedom& freedom = input.restraints.freedom;
+  // What the held pass on to the rest is load where they are moved.
+  const bool driven = input.enforced || !input.restraints.pins.empty();
+  double total = 0.0;
   // Node by node, P the projector on what is free: reactions
   // (I - P)(K u - f) - P S u and the residual P (f - K u - S u).
   for (Eigen::Index i = 0; i < input.f.size() / 3; ++i) {
     Mat3 P = Mat3::Identity();
-    if (h < input.freedom.held.size() && input.freedom.held[h] == i) {
-      P = input.freedom.projector[h++];
+    if (h < freedom.held.size() && freedom.held[h] == i) {
+      P = freedom.projector[h++];
     }
     const Vec3 f = P * input.f.segment<3>(3 * i);
     const Vec3 pull = input.springs.segment<3>(3 * i);
@@ -41,6 +58,13 @@ Equilibrium check_equilibrium(const EquilibriumInput& input) {
         input.f.segment<3>(3 * i) - input.internal.segment<3>(3 * i);
     result.reactions.segment<3>(3 * i) = P * gap - gap - P * pull;
     load += f.squaredNorm();
+    total += input.f.segment<3>(3 * i).norm();
+    if (driven) {
+      const Vec3 passed = input.internal.segment<3>(3 * i) -
+                          P * input.internal.segment<3>(3 * i);
+      load += passed.squaredNorm();
+      total += passed.norm();
+    }
     error += (P * (gap - pull)).squaredNorm();
     rounding += input.diagonal.segment<3>(3 * i)
                     .cwiseProduct(P * input.u.segment<3>(3 * i))
@@ -64,13 +88,14 @@ Equilibrium check_equilibrium(const EquilibriumInput& input) {
   // Loads and reactions of a body at rest sum to zero.
   Vec3 force = Vec3::Zero();
   Vec3 moment = Vec3::Zero();
-  double total = 0.0;
+  const std::vector<char> balanced = on_free_pins(input.restraints);
   for (std::size_t i = 0; i < input.x.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(3 * i);
-    const Vec3 sum = input.f.segment<3>(at) + result.reactions.segment<3>(at);
+    const Vec3 held = balanced[i] == 0 ? Vec3(result.reactions.segment<3>(at))
+                                       : Vec3(-input.springs.segment<3>(at));
+    const Vec3 sum = input.f.segment<3>(at) + held;
     force += sum;
     moment += ((input.x[i] - centre) / size).cross(sum);
-    total += input.f.segment<3>(at).norm();
   }
   result.imbalance = (force.norm() + moment.norm()) / total;
   result.energy = 0.5 * input.u.dot(input.internal);

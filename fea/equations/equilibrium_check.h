@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 #include "core/types.h"
-#include "fea/solver/node_freedom.h"
+#include "fea/supports/restraints.h"
 
 namespace meniscus::equations {
 
@@ -18,17 +18,20 @@ struct EquilibriumInput {
   const VectorX& internal;  // K u [force]
   const VectorX& springs;   // S u [force]
   const VectorX& u;         // [length]
-  const solver::NodeFreedom& freedom;
+  const supports::Restraints& restraints;
   const VectorX& diagonal;  // of the stiffness [force/length]
+  bool enforced = false;    // something is held at another place than 0
 };
 
 struct Equilibrium {
-  VectorX reactions;       // K u - f along held directions, -S u along free
-                           // ones [force]
-  double residual = 0.0;   // |f - K u - S u| / |f| on free unknowns
+  VectorX reactions;       // K u - f along held directions and on the nodes of
+                           // pins, -S u along free ones [force]
+  double residual = 0.0;   // |f - K u - S u| / |f| on free unknowns; what pins
+                           // and enforced displacements pass on is load, too
   double rounding = 0.0;   // what double precision allows for that residual
   double imbalance = 0.0;  // |sum of reactions and loads| / sum of |loads|,
-                           // forces and moments (over the part's size)
+                           // forces and moments (over the part's size); those
+                           // on a free pin balance by themselves
   double energy = 0.0;     // u . K u / 2 [force length]
 };
 Equilibrium check_equilibrium(const EquilibriumInput& input);

@@ -6,6 +6,7 @@
 
 #include "fea/element/elastic_law.h"
 #include "fea/equations/elastic_adjoint.h"
+#include "fea/equations/pin_motions.h"
 #include "fea/solver/assembly.h"
 #include "fea/solver/node_order.h"
 #include "fea/solver/preconditioner.h"
@@ -19,6 +20,7 @@ struct KeptState {
   struct Group {
     std::vector<int> cases;
     supports::Restraints restraints;
+    PinMotions pins;
     const solver::Preconditioner* preconditioner = nullptr;  // of the model
   };
 

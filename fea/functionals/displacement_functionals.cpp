@@ -201,7 +201,7 @@ element::DirectedFunctional rotation_functional(
     const TetMesh& mesh, const std::string& surface, const Vec3& axis,
     const VectorX& displacement, element::Derivatives derivatives) {
   check_displacement(mesh, surface, displacement);
-  const loads::RemoteLoad load{.surface = surface,
+  const loads::RemoteLoad load{.surfaces = surface,
                                .moment = unit_direction(surface, axis)};
   element::DirectedFunctional result;
   if (derivatives == element::Derivatives::None) {

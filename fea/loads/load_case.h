@@ -1,4 +1,4 @@
-/// What acts on a part and what holds it: plain data, by surface name.
+/// What acts on a part, with what holds it: plain data, by surface name.
 #pragma once
 
 #include <functional>
@@ -7,7 +7,8 @@
 #include <vector>
 
 #include "core/types.h"
-#include "fea/element/local_axes.h"
+#include "fea/loads/support.h"
+#include "fea/loads/surfaces.h"
 
 namespace meniscus::loads {
 
@@ -23,63 +24,9 @@ struct SlopedField {
   VectorOfPlace slope;
 };
 
-enum class SupportKind {
-  Components,  // those that are fixed, along x, y, z or the support's axes
-  Normal,      // the surface slides: no displacement along its normal
-  Symmetry     // the same for a plane, which the surface must be
-};
-
-/// Fixes components of displacement on a surface. Where surfaces meet, a node
-/// is held along all their directions; normals that differ by no more than the
-/// mesh's own facets do count as one.
-struct Support {
-  std::string surface;
-  bool fix_x = false, fix_y = false, fix_z = false;  // of Components
-  SupportKind kind = SupportKind::Components;
-  std::optional<element::LocalAxes>
-      axes;  // x, y, z of Components are along these
-
-  bool operator==(const Support&) const = default;
-};
-
-/// A node, on a surface or inside, held along a direction, whatever surfaces
-/// do.
-struct HeldNode {
-  int node = 0;
-  Vec3 direction = Vec3::UnitX();  // any length but 0
-
-  bool operator==(const HeldNode&) const = default;
-};
-
-enum class SpringMeasure { PerArea, Total };
-
-/// A bed of springs between a surface and the ground, spread consistently:
-/// traction -stiffness u. All stiffnesses are 0 or above.
-struct SpringBed {
-  std::string surface;
-  Vec3 components =
-      Vec3::Zero();     // along x, y, z or the axes [pressure/length]
-                        // per area, [force/length] in total
-  double normal = 0.0;  // along the surface's normal; the same
-  SpringMeasure measure = SpringMeasure::PerArea;
-  std::optional<element::LocalAxes> axes;
-
-  bool operator==(const SpringBed&) const = default;
-};
-
-/// A spring between nodes of one element and the ground: it pulls with
-/// stiffness x e on e = sum coefficients . u.
-struct NodeSpring {
-  double stiffness = 0.0;  // above 0 [force/length]
-  std::vector<int> nodes;
-  Points coefficients;  // one per node
-
-  bool operator==(const NodeSpring&) const = default;
-};
-
-/// A total force spread as uniform traction over a surface [force].
+/// A total force spread as uniform traction over all of the surfaces [force].
 struct SurfaceForce {
-  std::string surface;
+  Surfaces surfaces;
   Vec3 total = Vec3::Zero();
 };
 
@@ -99,14 +46,25 @@ struct SurfaceTraction {
   MatrixOfPlace slope;  // dt_i/dx_j of the field, for derivatives only
 };
 
-/// A force at a point and a moment, carried by a surface without stiffening it:
-/// the nodal forces are those of the same force and moment that are least in
-/// the norm weighted by area (RBE3).
+/// A force at a point and a moment, carried by surfaces together without
+/// stiffening them: the nodal forces are those of the same force and moment
+/// that are least in the norm weighted by area (RBE3).
 struct RemoteLoad {
-  std::string surface;
+  Surfaces surfaces;
   Vec3 point = Vec3::Zero();   // where the force acts [length]
   Vec3 force = Vec3::Zero();   // [force]
   Vec3 moment = Vec3::Zero();  // beside the force's own [force length]
+};
+
+/// A force that a round pin presses into its bores without friction, as a
+/// cosine over the half that it is pressed against (bearing_load.h); what it
+/// has along the axis is spread evenly. Surfaces share it as the pressures
+/// balance: with a point about it, else by area.
+struct BearingLoad {
+  Surfaces surfaces;
+  Vec3 force = Vec3::Zero();       // not 0 [force]
+  std::optional<Vec3> point = {};  // on the axis [length]
+  std::optional<Vec3> axis = {};   // any length but 0; else the surfaces' own
 };
 
 /// Centrifugal forces, as seen from a part that turns steadily.
@@ -134,12 +92,17 @@ struct LoadCase {
   std::vector<SurfacePressure> pressures;
   std::vector<SurfaceTraction> tractions;
   std::vector<RemoteLoad> remote_loads;
+  std::vector<BearingLoad> bearings;
   Vec3 gravity = Vec3::Zero();  // force per mass [length/time^2]
   std::optional<Spin> spin;
   std::optional<Temperature> temperature;
   std::vector<SpringBed> springs;
   std::vector<NodeSpring> node_springs;
+  std::vector<RigidPin> pins;
   VectorX nodal;  // forces at nodes, 3 per node; empty: none [force]
 };
+
+/// A support or a pin says at what displacement it holds, if only at 0 now.
+bool enforces(const LoadCase& load_case);
 
 }  // namespace meniscus::loads

@@ -7,6 +7,7 @@
 #include "fea/element/element_sweep.h"
 #include "fea/element/face_points.h"
 #include "fea/element/surface_faces.h"
+#include "fea/loads/bearing_load.h"
 #include "fea/loads/load_checks.h"
 #include "fea/loads/loads.h"
 #include "fea/loads/remote_gradient.h"
@@ -15,9 +16,9 @@ namespace meniscus::loads {
 
 namespace {
 
-Vec3 mean_over(const TetMesh& mesh, const std::string& surface,
+Vec3 mean_over(const TetMesh& mesh, const Surfaces& surfaces,
                const VectorX& v) {
-  const SurfaceWeights w = surface_weights(mesh, surface);
+  const SurfaceWeights w = surface_weights(mesh, surfaces);
   Vec3 sum = Vec3::Zero();
   for (std::size_t k = 0; k < w.nodes.size(); ++k) {
     sum +=
@@ -32,7 +33,7 @@ void add_surface_loads(const TetMesh& mesh, const LoadCase& load_case,
   // A total force F: f . v = F . (mean of v over the surface).
   for (const SurfaceForce& load : load_case.forces) {
     out.by_number.forces.push_back(
-        {load.surface, mean_over(mesh, load.surface, v)});
+        {load.surfaces, mean_over(mesh, load.surfaces, v)});
   }
   // A pressure: -int N . v by its value; a field keeps weights and places of
   // the points, so that any rate of it is a sum.
@@ -77,7 +78,12 @@ void add_surface_loads(const TetMesh& mesh, const LoadCase& load_case,
   for (const RemoteLoad& load : load_case.remote_loads) {
     const RemoteGradient by = remote_gradient(mesh, load, v, nullptr);
     out.by_number.remote_loads.push_back(
-        {load.surface, by.by_point, by.by_force, by.by_moment});
+        {load.surfaces, by.by_point, by.by_force, by.by_moment});
+  }
+  for (const BearingLoad& load : load_case.bearings) {
+    const BearingGradient by = bearing_gradient(mesh, load, v, nullptr);
+    out.by_number.bearings.push_back(
+        {load.surfaces, by.by_force, by.by_point, by.by_axis});
   }
 }
 
@@ -170,6 +176,9 @@ void check_rates(const LoadCase& by, const LoadCase& rates) {
       by.pressures.size() != rates.pressures.size() ||
       by.tractions.size() != rates.tractions.size() ||
       by.remote_loads.size() != rates.remote_loads.size() ||
+      by.bearings.size() != rates.bearings.size() ||
+      (!by.supports.empty() && by.supports.size() != rates.supports.size()) ||
+      (!by.pins.empty() && by.pins.size() != rates.pins.size()) ||
       (rates.nodal.size() != 0 && by.nodal.size() != rates.nodal.size())) {
     throw InvalidInput(fmt::format(
         "load case '{}': the rates of its loads differ from them in number",
@@ -243,6 +252,22 @@ double temperature_rate(const LoadGradient& gradient, const LoadCase& rates) {
   return sum;
 }
 
+double enforced_rate(const LoadCase& by, const LoadCase& rates) {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < by.supports.size(); ++k) {
+    sum += value_of(by.supports[k].displacement)
+               .dot(value_of(rates.supports[k].displacement));
+  }
+  for (std::size_t k = 0; k < by.pins.size(); ++k) {
+    const RigidPin& d = by.pins[k];
+    const RigidPin& rate = rates.pins[k];
+    sum += d.point.dot(rate.point) +
+           value_of(d.displacement).dot(value_of(rate.displacement)) +
+           value_of(d.rotation).dot(value_of(rate.rotation));
+  }
+  return sum;
+}
+
 }  // namespace
 
 LoadGradient load_gradient(const TetMesh& mesh,
@@ -293,7 +318,7 @@ void add_temperature_gradient(const TetMesh& mesh, const LoadCase& load_case,
 double load_rate(const LoadGradient& gradient, const LoadCase& rates) {
   const LoadCase& by = gradient.by_number;
   check_rates(by, rates);
-  double sum = by.gravity.dot(rates.gravity);
+  double sum = by.gravity.dot(rates.gravity) + enforced_rate(by, rates);
   if (rates.nodal.size() != 0) {
     sum += by.nodal.dot(rates.nodal);
   }
@@ -307,6 +332,13 @@ double load_rate(const LoadGradient& gradient, const LoadCase& rates) {
     const RemoteLoad& rate = rates.remote_loads[k];
     sum += d.point.dot(rate.point) + d.force.dot(rate.force) +
            d.moment.dot(rate.moment);
+  }
+  for (std::size_t k = 0; k < by.bearings.size(); ++k) {
+    const BearingLoad& d = by.bearings[k];
+    const BearingLoad& rate = rates.bearings[k];
+    sum += d.force.dot(rate.force) +
+           value_of(d.point).dot(value_of(rate.point)) +
+           value_of(d.axis).dot(value_of(rate.axis));
   }
   if (by.spin && rates.spin) {
     sum += by.spin->point.dot(rates.spin->point) +

@@ -40,9 +40,10 @@ void add_temperature_gradient(const TetMesh& mesh, const LoadCase& load_case,
 
 /// v . df for `rates`: a load case with the same loads in the same order, every
 /// number (and value of a field) its derivative by one design variable. A
-/// rate of a field may be a number: it is the same everywhere. Supports and
-/// springs are not read: a model's are its base's. Throws InvalidInput where
-/// loads differ in count, or a field stands for a number's rate.
+/// rate of a field may be a number: it is the same everywhere. Of supports and
+/// pins the enforced numbers count, where the gradient has them
+/// (supports/enforced.h); a model's springs are its base's. Throws InvalidInput
+/// where loads differ in count, or a field stands for a number's rate.
 double load_rate(const LoadGradient& gradient, const LoadCase& rates);
 
 }  // namespace meniscus::loads

@@ -1,5 +1,6 @@
 #include "fea/loads/loads.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -7,6 +8,7 @@
 #include "core/error.h"
 #include "fea/element/face_points.h"
 #include "fea/element/surface_faces.h"
+#include "fea/loads/bearing_load.h"
 #include "fea/loads/body_loads.h"
 #include "fea/loads/load_checks.h"
 #include "fea/loads/remote_load.h"
@@ -15,8 +17,8 @@ namespace meniscus::loads {
 
 namespace {
 
-std::string named(const char* what, const std::string& surface) {
-  return fmt::format("the {} on surface '{}'", what, surface);
+std::string named(const char* what, const Surfaces& surfaces) {
+  return fmt::format("the {} on surface '{}'", what, surfaces.text());
 }
 
 /// Adds traction(point) [force per area, times the point's area] to f.
@@ -37,8 +39,8 @@ void spread(const TetMesh& mesh, const std::string& surface,
 
 void add_force(const TetMesh& mesh, const LoadCase& load_case,
                const SurfaceForce& load, VectorX& f) {
-  require_finite(load.total, load_case, named("force", load.surface));
-  const SurfaceWeights w = surface_weights(mesh, load.surface);
+  require_finite(load.total, load_case, named("force", load.surfaces));
+  const SurfaceWeights w = surface_weights(mesh, load.surfaces);
   const Vec3 traction = load.total / w.weights.sum();
   for (std::size_t k = 0; k < w.nodes.size(); ++k) {
     f.segment<3>(3L * w.nodes[k]) +=
@@ -90,11 +92,11 @@ void add_traction(const TetMesh& mesh, const LoadCase& load_case,
 
 void add_remote(const TetMesh& mesh, const LoadCase& load_case,
                 const RemoteLoad& load, VectorX& f) {
-  require_finite(load.force, load_case, named("remote force", load.surface));
-  require_finite(load.moment, load_case, named("moment", load.surface));
+  require_finite(load.force, load_case, named("remote force", load.surfaces));
+  require_finite(load.moment, load_case, named("moment", load.surfaces));
   require_finite(load.point, load_case,
-                 named("point of the remote load", load.surface));
-  const SurfaceWeights w = surface_weights(mesh, load.surface);
+                 named("point of the remote load", load.surfaces));
+  const SurfaceWeights w = surface_weights(mesh, load.surfaces);
   const Points forces = remote_forces(mesh, w, load);
   for (std::size_t k = 0; k < w.nodes.size(); ++k) {
     f.segment<3>(3L * w.nodes[k]) += forces[k];
@@ -103,28 +105,33 @@ void add_remote(const TetMesh& mesh, const LoadCase& load_case,
 
 }  // namespace
 
-SurfaceWeights surface_weights(const TetMesh& mesh,
-                               const std::string& surface) {
-  const int label = element::surface_label(mesh, surface);
+SurfaceWeights surface_weights(const TetMesh& mesh, const Surfaces& surfaces) {
   SurfaceWeights result;
-  result.nodes = element::surface_nodes(mesh, label);
   VectorX all = VectorX::Zero(static_cast<Eigen::Index>(mesh.nodes.size()));
-  element::over_face_points(mesh, label, element::FaceRule::Three,
-                            [&](int face, const element::FacePoint& point) {
-                              const double area = point.normal.norm();
-                              const auto ids = mesh.face(face);
-                              for (std::size_t a = 0; a < ids.size(); ++a) {
-                                all[ids[a]] += point.shape[a] * area;
-                              }
-                            });
+  for (const std::string& surface : surfaces) {
+    const int label = element::surface_label(mesh, surface);
+    const std::vector<int> nodes = element::surface_nodes(mesh, label);
+    result.nodes.insert(result.nodes.end(), nodes.begin(), nodes.end());
+    element::over_face_points(mesh, label, element::FaceRule::Three,
+                              [&](int face, const element::FacePoint& point) {
+                                const double area = point.normal.norm();
+                                const auto ids = mesh.face(face);
+                                for (std::size_t a = 0; a < ids.size(); ++a) {
+                                  all[ids[a]] += point.shape[a] * area;
+                                }
+                              });
+  }
+  std::sort(result.nodes.begin(), result.nodes.end());
+  result.nodes.erase(std::unique(result.nodes.begin(), result.nodes.end()),
+                     result.nodes.end());
   result.weights.resize(static_cast<Eigen::Index>(result.nodes.size()));
   for (std::size_t k = 0; k < result.nodes.size(); ++k) {
     result.weights[static_cast<Eigen::Index>(k)] = all[result.nodes[k]];
   }
   if (!(result.weights.sum() > 0.0)) {
-    throw InvalidInput(
-        fmt::format("surface '{}' has {} nodes but an area of {}", surface,
-                    result.nodes.size(), result.weights.sum()));
+    throw InvalidInput(fmt::format(
+        "surface '{}' has {} nodes but an area of {}", surfaces.text(),
+        result.nodes.size(), result.weights.sum()));
   }
   return result;
 }
@@ -152,6 +159,9 @@ VectorX nodal_forces(const TetMesh& mesh, const LoadCase& load_case,
   }
   for (const RemoteLoad& load : load_case.remote_loads) {
     add_remote(mesh, load_case, load, f);
+  }
+  for (const BearingLoad& load : load_case.bearings) {
+    add_bearing_forces(mesh, load, f);
   }
   add_body_forces(mesh, load_case, materials, f);
   add_thermal_forces(mesh, load_case, materials, f);

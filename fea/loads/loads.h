@@ -10,15 +10,16 @@
 
 namespace meniscus::loads {
 
-/// Consistent weights of a surface: integral of each node's shape function
-/// over it, by the three-point rule (CalculiX's own for C3D10) [length^2].
+/// Consistent weights of surfaces: integral of each node's shape function
+/// over them, by the three-point rule (CalculiX's own for C3D10) [length^2].
 struct SurfaceWeights {
   std::vector<int> nodes;  // ascending
-  VectorX weights;         // one per node; their sum is the surface's area
+  VectorX weights;         // one per node; their sum is the area of all
 };
 
-/// Throws InvalidInput for a surface that is unknown, has no faces or no area.
-SurfaceWeights surface_weights(const TetMesh& mesh, const std::string& surface);
+/// Throws InvalidInput for a surface that is unknown, has no faces or no area,
+/// and for none at all.
+SurfaceWeights surface_weights(const TetMesh& mesh, const Surfaces& surfaces);
 
 /// Consistent nodal forces of a load case, 3 per node, those of expansion
 /// included [force]. Numbers act by CalculiX's rules (three points a face, the

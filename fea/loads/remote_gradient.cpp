@@ -26,19 +26,20 @@ Vec3 at(const VectorX& v, int node) { return v.segment<3>(3L * node); }
 /// Through the weights, each the integral of a shape function.
 void pull_back_weights(const TetMesh& mesh, const RemoteLoad& load,
                        const VectorX& by_weight, Points& gradient) {
-  element::pull_back_faces(
-      mesh, element::surface_label(mesh, load.surface),
-      element::FaceRule::Three,
-      [&](int f,
-          const element::FacePoint& point) -> element::FacePointGradient {
-        double sum = 0.0;
-        const auto ids = mesh.face(f);
-        for (std::size_t a = 0; a < ids.size(); ++a) {
-          sum += point.shape[a] * by_weight[ids[a]];
-        }
-        return {.by_normal = sum * point.normal.normalized()};
-      },
-      gradient);
+  for (const std::string& surface : load.surfaces) {
+    element::pull_back_faces(
+        mesh, element::surface_label(mesh, surface), element::FaceRule::Three,
+        [&](int f,
+            const element::FacePoint& point) -> element::FacePointGradient {
+          double sum = 0.0;
+          const auto ids = mesh.face(f);
+          for (std::size_t a = 0; a < ids.size(); ++a) {
+            sum += point.shape[a] * by_weight[ids[a]];
+          }
+          return {.by_normal = sum * point.normal.normalized()};
+        },
+        gradient);
+  }
 }
 
 void add_gradient(const TetMesh& mesh, const RemoteLoad& load,
@@ -69,8 +70,8 @@ void add_gradient(const TetMesh& mesh, const RemoteLoad& load,
 RemoteGradient remote_gradient(const TetMesh& mesh, const RemoteLoad& load,
                                const VectorX& v, Points* gradient) {
   RemoteParts parts;
-  parts.w = surface_weights(mesh, load.surface);
-  parts.moments = remote_moments(mesh, parts.w, load.surface);
+  parts.w = surface_weights(mesh, load.surfaces);
+  parts.moments = remote_moments(mesh, parts.w, load.surfaces);
   const RemoteMoments& moments = parts.moments;
   parts.mean.setZero();
   Vec3 L = Vec3::Zero();

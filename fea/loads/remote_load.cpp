@@ -17,7 +17,7 @@ constexpr double kLine = 1e-9;
 }  // namespace
 
 RemoteMoments remote_moments(const TetMesh& mesh, const SurfaceWeights& weights,
-                             const std::string& surface) {
+                             const Surfaces& surfaces) {
   RemoteMoments result;
   result.area = weights.weights.sum();
   for (std::size_t k = 0; k < weights.nodes.size(); ++k) {
@@ -35,7 +35,7 @@ RemoteMoments remote_moments(const TetMesh& mesh, const SurfaceWeights& weights,
     throw InvalidInput(fmt::format(
         "surface '{}': its nodes lie on a line and cannot carry the moment of "
         "a remote load",
-        surface));
+        surfaces.text()));
   }
   result.inverse = eigen.vectors * eigen.values.cwiseInverse().asDiagonal() *
                    eigen.vectors.transpose();
@@ -44,7 +44,7 @@ RemoteMoments remote_moments(const TetMesh& mesh, const SurfaceWeights& weights,
 
 Points remote_forces(const TetMesh& mesh, const SurfaceWeights& weights,
                      const RemoteLoad& load) {
-  const RemoteMoments moments = remote_moments(mesh, weights, load.surface);
+  const RemoteMoments moments = remote_moments(mesh, weights, load.surfaces);
   const Vec3 turn =
       moments.inverse *
       (load.moment + (load.point - moments.centre).cross(load.force));

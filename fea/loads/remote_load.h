@@ -1,4 +1,4 @@
-/// A force and a moment carried by a surface.
+/// A force and a moment carried by surfaces together.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace meniscus::loads {
 
-/// Of a surface's nodes with its weights.
+/// Of the surfaces' nodes with their weights.
 struct RemoteMoments {
   double area = 0.0;
   Vec3 centre = Vec3::Zero();
@@ -16,9 +16,9 @@ struct RemoteMoments {
 
 /// Throws InvalidInput where the nodes lie on a line and can carry no moment.
 RemoteMoments remote_moments(const TetMesh& mesh, const SurfaceWeights& weights,
-                             const std::string& surface);
+                             const Surfaces& surfaces);
 
-/// Nodal forces f_i = w_i (a + b x (x_i - c)), w the surface's weights and c
+/// Nodal forces f_i = w_i (a + b x (x_i - c)), w the surfaces' weights and c
 /// their centre: of all with the given force and moment the least in
 /// sum |f_i|^2 / w_i. One per node of `weights` [force]. Throws as
 /// remote_moments().

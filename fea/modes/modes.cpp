@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "core/timer.h"
+#include "fea/equations/elastic_checks.h"
 #include "fea/equations/elastic_operator.h"
 #include "fea/modes/eigen_shapes.h"
 #include "fea/modes/eigenpairs.h"
@@ -111,6 +112,7 @@ NaturalModes natural_modes(const TetMesh& mesh,
                            const loads::LoadCase& held,
                            const ModeOptions& options) {
   const Timer timer;
+  equations::refuse_pins(held);
   const ShiftedSystem system(mesh, materials, held);
   NaturalModes modes = solve(mesh, system.shifted(),
                              {.shift = system.shift(),

@@ -24,12 +24,18 @@ constexpr double kNormalNoise = 0.5;
 constexpr double kExactWeight = 1e6;
 
 /// Part number of every node; parts are numbered by their lowest node.
-std::vector<int> connected_parts(const TetMesh& mesh) {
+std::vector<int> connected_parts(const TetMesh& mesh,
+                                 const std::vector<PinFrame>& pins) {
   UnionFind parts(mesh.nodes.size());
   for (int e = 0; e < mesh.element_count(); ++e) {
     const auto ids = mesh.element(e);
     for (const int node : ids) {
       parts.join(ids[0], node);
+    }
+  }
+  for (const PinFrame& pin : pins) {
+    for (const int node : pin.nodes) {
+      parts.join(pin.nodes[0], node);
     }
   }
   return parts.roots();
@@ -49,6 +55,13 @@ struct RigidFrame {
     const int j = (k + 2) % 3;
     r[3 + i] = d[j];
     r[3 + j] = -d[i];
+    return r;
+  }
+
+  /// Rotation about the unit axis, times the size, per unit of the motions.
+  static Vec6 turn_row(const Vec3& axis) {
+    Vec6 r = Vec6::Zero();
+    r.tail<3>() = axis;
     return r;
   }
 };
@@ -115,8 +128,8 @@ struct Parts {
   std::vector<RigidFrame> frames;
 };
 
-Parts find_parts(const TetMesh& mesh) {
-  const std::vector<int> head = connected_parts(mesh);
+Parts find_parts(const TetMesh& mesh, const std::vector<PinFrame>& pins = {}) {
+  const std::vector<int> head = connected_parts(mesh, pins);
   Parts parts;
   parts.of_node.assign(mesh.nodes.size(), -1);
   for (const int node : mesh.elements) {
@@ -176,10 +189,28 @@ void add_direction(const HeldDirection& held, const Vec3& x,
   }
 }
 
+/// What a pin's fixed motions resist.
+void add_fixed_motions(const PinFrame& pin, const RigidFrame& frame,
+                       Resistance& resistance) {
+  for (int k = 0; k < 6; ++k) {
+    if (!pin.fixed[k]) {
+      continue;
+    }
+    Vec6 row = RigidFrame::turn_row(pin.axes.col(k % 3));
+    if (k < 3) {
+      row.setZero();
+      for (int c = 0; c < 3; ++c) {
+        row += pin.axes(c, k) * frame.row(pin.point, c);
+      }
+    }
+    resistance.exact += row * row.transpose();
+  }
+}
+
 /// Per part, the rigid motions that `held` leaves, as columns.
 std::vector<Eigen::MatrixXd> free_per_part(
     const TetMesh& mesh, const std::vector<HeldDirection>& held,
-    const Parts& parts) {
+    const std::vector<PinFrame>& pins, const Parts& parts) {
   std::vector<Resistance> resistances(parts.frames.size());
   for (const HeldDirection& h : held) {
     const int part = parts.of_node[h.node];
@@ -187,6 +218,10 @@ std::vector<Eigen::MatrixXd> free_per_part(
       add_direction(h, mesh.nodes[h.node], parts.frames[part],
                     resistances[part]);
     }
+  }
+  for (const PinFrame& pin : pins) {
+    const int part = parts.of_node[pin.nodes[0]];
+    add_fixed_motions(pin, parts.frames[part], resistances[part]);
   }
   std::vector<Eigen::MatrixXd> motions;
   for (const Resistance& resistance : resistances) {
@@ -204,9 +239,10 @@ std::vector<Eigen::MatrixXd> free_per_part(
 }  // namespace
 
 void check_held(const TetMesh& mesh, const std::vector<HeldDirection>& held,
+                const std::vector<PinFrame>& pins,
                 const std::string& load_case) {
-  const Parts parts = find_parts(mesh);
-  const auto motions = free_per_part(mesh, held, parts);
+  const Parts parts = find_parts(mesh, pins);
+  const auto motions = free_per_part(mesh, held, pins, parts);
   for (std::size_t p = 0; p < motions.size(); ++p) {
     if (motions[p].cols() > 0) {
       const RigidFrame& frame = parts.frames[p];
@@ -222,7 +258,7 @@ void check_held(const TetMesh& mesh, const std::vector<HeldDirection>& held,
 Eigen::MatrixXd free_motions(const TetMesh& mesh,
                              const std::vector<HeldDirection>& held) {
   const Parts parts = find_parts(mesh);
-  const auto motions = free_per_part(mesh, held, parts);
+  const auto motions = free_per_part(mesh, held, {}, parts);
   std::vector<Eigen::Index> first = {0};
   for (const Eigen::MatrixXd& motion : motions) {
     first.push_back(first.back() + motion.cols());

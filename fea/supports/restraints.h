@@ -9,14 +9,18 @@
 #include "fea/solver/corner_mesh.h"
 #include "fea/solver/node_freedom.h"
 #include "fea/solver/node_order.h"
+#include "fea/supports/pins.h"
 #include "fea/supports/springs.h"
 
 namespace meniscus::supports {
 
 /// In the solver's numbering.
 struct Restraints {
-  solver::NodeFreedom freedom;  // nodes in no element are held too
+  /// Nodes of pins are held, too, for these move on their own; so are nodes in
+  /// no element.
+  solver::NodeFreedom freedom;
   SpringBlocks springs;
+  std::vector<PinFrame> pins;
 
   bool operator==(const Restraints& other) const;
 };
@@ -30,7 +34,8 @@ Restraints make_restraints(const TetMesh& mesh,
                            const loads::LoadCase& load_case,
                            const solver::NodeOrder& order);
 
-/// The same nodes are held along as many directions, though these may turn.
+/// The same nodes are held along as many directions, though these may turn, and
+/// the same motions of the same pins are fixed.
 bool alike(const Restraints& a, const Restraints& b);
 
 int free_unknowns(const Restraints& restraints);

@@ -231,6 +231,12 @@ BedStiffness bed_stiffness_of(const TetMesh& mesh,
           scale * bed.normal};
 }
 
+VectorX reactions_of_supports(const VectorX& reactions,
+                              const SpringBlocks& springs, const VectorX& u) {
+  return springs.at.empty() ? reactions
+                            : VectorX(reactions + spring_forces(springs, u));
+}
+
 std::vector<SpringSet> spring_sets(const TetMesh& mesh,
                                    const loads::LoadCase& load_case) {
   std::vector<SpringSet> sets;

@@ -49,6 +49,11 @@ void add_springs(const solver::BlockPattern& pattern,
 /// S u: what the springs pull with, against u [force].
 VectorX spring_forces(const SpringBlocks& springs, const VectorX& u);
 
+/// Reactions, as ElasticSolution hands them out, of supports and pins alone:
+/// without what springs pull with at u.
+VectorX reactions_of_supports(const VectorX& reactions,
+                              const SpringBlocks& springs, const VectorX& u);
+
 /// Springs of one stiffness k: each pulls with k e on e = sum c_a . u_a.
 struct SpringSet {
   double stiffness = 0.0;  // [pressure/length] per area, [force/length] in

@@ -1,8 +1,7 @@
 #include "fea/supports/support_gradient.h"
 
 #include <algorithm>
-
-#include <Eigen/LU>
+#include <array>
 
 #include "fea/element/face_points.h"
 #include "fea/element/surface_faces.h"
@@ -21,61 +20,38 @@ struct ByDirection {
   Vec3 derivative;
 };
 
-/// The reactions of supports alone, which the reported ones at nodes with
-/// springs are not.
-VectorX of_supports(const VectorX& reactions, const SpringBlocks& springs,
-                    const VectorX& u) {
-  return springs.at.empty() ? reactions
-                            : VectorX(reactions + spring_forces(springs, u));
-}
+Vec3 at_node(const VectorX& v, int node) { return v.segment<3>(3L * node); }
 
-/// With directions D at a node, Q = D D^+ and lambda, u across all of D:
-///   lambda . dQ r + r' . dQ u = lambda . dD D^+ r + u . dD D^+ r'.
-void add_node(const HeldDirection* first, const HeldSpan& span, const Vec3& u,
-              const Vec3& r, const Vec3& lambda, const Vec3& adjoint_r,
-              std::vector<ByDirection>& out) {
-  Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3> D(3, span.rank);
-  for (int k = 0; k < span.rank; ++k) {
-    D.col(k) = first[span.index[k]].direction;
-  }
-  const auto inverse = (D.transpose() * D).eval().inverse().eval();
-  for (int k = 0; k < span.rank; ++k) {
-    const HeldDirection& held = first[span.index[k]];
-    const Vec3 row = D * inverse.col(k);  // of D^+
-    out.push_back({held.support, held.node,
-                   row.dot(r) * lambda + row.dot(adjoint_r) * u});
-  }
-}
-
+/// With directions D at a node, Q = D D^+:
+///   lambda . dQ r + r' . dQ u = lambda . dD D^+ r + u . dD D^+ r',
+/// lambda across all of D, and D^T u kept at what is enforced.
 std::vector<ByDirection> by_directions(const TetMesh& mesh,
                                        const loads::LoadCase& load_case,
                                        const loads::AdjointPair& pair) {
   const SpringBlocks springs = spring_blocks(mesh, load_case, mesh.order);
-  const VectorX r = of_supports(pair.reactions, springs, pair.displacement);
+  const VectorX r =
+      reactions_of_supports(pair.reactions, springs, pair.displacement);
   const VectorX adjoint_r =
-      of_supports(pair.adjoint_reactions, springs, pair.lambda);
-  std::vector<HeldDirection> held = held_directions(mesh, load_case);
-  std::stable_sort(held.begin(), held.end(),
-                   [](const HeldDirection& a, const HeldDirection& b) {
-                     return a.node < b.node;
-                   });
+      reactions_of_supports(pair.adjoint_reactions, springs, pair.lambda);
   std::vector<ByDirection> result;
-  for (std::size_t k = 0; k < held.size();) {
-    const int node = held[k].node;
-    std::size_t end = k;
-    while (end < held.size() && held[end].node == node) {
-      ++end;
-    }
-    const HeldSpan span = held_span(held.data() + k, held.data() + end);
-    if (span.rank < 3) {  // else held fast, however the directions turn
-      const auto at = [node](const VectorX& v) -> Vec3 {
-        return v.segment<3>(3L * node);
-      };
-      add_node(held.data() + k, span, at(pair.displacement), at(r),
-               at(pair.lambda), at(adjoint_r), result);
-    }
-    k = end;
-  }
+  over_held_nodes(held_directions(mesh, load_case),
+                  [&](const HeldDirection* first, const HeldDirection*,
+                      const HeldSpan& span) {
+                    const Vec3 u = at_node(pair.displacement, first->node);
+                    if (span.rank == 3 && u.isZero(0.0)) {
+                      return;  // held fast, however the directions turn
+                    }
+                    const std::array<Vec3, 3> dual =
+                        dual_directions(first, span);
+                    for (int k = 0; k < span.rank; ++k) {
+                      const HeldDirection& held = first[span.index[k]];
+                      result.push_back(
+                          {held.support, held.node,
+                           dual[k].dot(at_node(r, held.node)) *
+                                   at_node(pair.lambda, held.node) +
+                               dual[k].dot(at_node(adjoint_r, held.node)) * u});
+                    }
+                  });
   return result;
 }
 

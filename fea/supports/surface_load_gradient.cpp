@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "fea/element/face_points.h"
 #include "fea/element/surface_faces.h"
+#include "fea/loads/bearing_load.h"
 #include "fea/loads/load_checks.h"
 #include "fea/loads/loads.h"
 #include "fea/loads/remote_gradient.h"
@@ -20,23 +21,25 @@ namespace {
 /// surface's weights.
 void add_force(const TetMesh& mesh, const loads::SurfaceForce& load,
                const VectorX& v, Points& gradient) {
-  const loads::SurfaceWeights w = loads::surface_weights(mesh, load.surface);
+  const loads::SurfaceWeights w = loads::surface_weights(mesh, load.surfaces);
   const double area = w.weights.sum();
   double mean = 0.0;
   for (std::size_t k = 0; k < w.nodes.size(); ++k) {
     mean += w.weights[static_cast<Eigen::Index>(k)] / area *
             load.total.dot(v.segment<3>(3L * w.nodes[k]));
   }
-  element::pull_back_faces(
-      mesh, element::surface_label(mesh, load.surface),
-      element::FaceRule::Three,
-      [&](int f,
-          const element::FacePoint& point) -> element::FacePointGradient {
-        const double here =
-            load.total.dot(element::value_at(mesh, f, point, v));
-        return {.by_normal = (here - mean) / area * point.normal.normalized()};
-      },
-      gradient);
+  for (const std::string& surface : load.surfaces) {
+    element::pull_back_faces(
+        mesh, element::surface_label(mesh, surface), element::FaceRule::Three,
+        [&](int f,
+            const element::FacePoint& point) -> element::FacePointGradient {
+          const double here =
+              load.total.dot(element::value_at(mesh, f, point, v));
+          return {.by_normal =
+                      (here - mean) / area * point.normal.normalized()};
+        },
+        gradient);
+  }
 }
 
 void add_pressure(const TetMesh& mesh, const loads::LoadCase& load_case,
@@ -156,6 +159,9 @@ void add_surface_load_gradient(const TetMesh& mesh,
   }
   for (const loads::RemoteLoad& load : load_case.remote_loads) {
     loads::remote_gradient(mesh, load, v, &gradient);
+  }
+  for (const loads::BearingLoad& load : load_case.bearings) {
+    loads::bearing_gradient(mesh, load, v, &gradient);
   }
 }
 

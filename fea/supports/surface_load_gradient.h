@@ -7,7 +7,7 @@
 namespace meniscus::supports {
 
 /// Adds the gradient of v . f, f the nodal forces of the load case's forces,
-/// pressures, tractions and remote loads.
+/// pressures, tractions, remote and bearing loads.
 void add_surface_load_gradient(const TetMesh& mesh,
                                const loads::LoadCase& load_case,
                                const VectorX& v, Points& gradient);

@@ -123,10 +123,12 @@ void check_inner_surfaces(const Case& input, CaseProblems& problems) {
   };
   for (const LoadCaseEntry& load_case : input.load_cases) {
     for (const LoadEntry& load : load_case.loads) {
-      look("load", load.surface, load.line);
+      for (const std::string& surface : load.surfaces) {
+        look("load", surface, load.line);
+      }
     }
-    for (const loads::Support& support : load_case.supports) {
-      look("support", support.surface, load_case.line);
+    for (const SupportEntry& entry : load_case.supports) {
+      look("support", entry.support.surface, entry.line);
     }
     for (const loads::SpringBed& springs : load_case.springs) {
       look("spring bed", springs.surface, load_case.line);
@@ -164,23 +166,28 @@ void check_held_loads(const Case& input, const EvaluatedCase& inputs,
   for (std::size_t k = 0; k < inputs.load_cases.size(); ++k) {
     const loads::LoadCase& load_case = inputs.load_cases[k];
     for (const LoadEntry& load : input.load_cases[k].loads) {
-      if (load.surface.empty()) {
+      if (load.surfaces.empty()) {
         continue;
       }
       // Of several forces there: along all that any pushes.
       Vec3 push = Vec3::Zero();
       for (const loads::SurfaceForce& force : load_case.forces) {
-        if (load.kind == LoadKind::Force && force.surface == load.surface) {
+        if (load.kind == LoadKind::Force && force.surfaces == load.surfaces) {
           push += force.total.cwiseAbs();
         }
       }
-      if (is_held(load_case, load.surface,
-                  push.isZero(0.0) ? Vec3::Ones() : push)) {
+      if (push.isZero(0.0)) {
+        push.setOnes();
+      }
+      if (std::all_of(load.surfaces.begin(), load.surfaces.end(),
+                      [&](const std::string& surface) {
+                        return is_held(load_case, surface, push);
+                      })) {
         problems.warn(
             load.line,
             fmt::format("the load on '{}' moves nothing: load case '{}' holds "
                         "that surface the way it pushes",
-                        load.surface, load_case.name));
+                        load.surfaces.text(), load_case.name));
       }
     }
   }

@@ -207,23 +207,48 @@ enum class LoadKind {
   Temperature
 };
 
+/// How surfaces take a force or a moment.
+enum class LoadPath {
+  Spread,  // without being stiffened
+  Rigid,   // as one rigid body
+  Bearing  // pressed by a round pin; forces only
+};
+
 /// What the kind does not need is empty.
 struct LoadEntry {
   LoadKind kind = LoadKind::Force;
-  std::string surface;
+  LoadPath by = LoadPath::Spread;  // of forces and moments
+  loads::Surfaces surfaces;
   QuantityVector vector;  // force, gravity, axis of spin
   QuantityVector moment;
-  QuantityVector at;    // the remote point; on the axis of spin
-  PlaceQuantity place;  // pressure, temperature
+  QuantityVector at;                   // the remote point; on the axis of spin
+  bool has_at = false;                 // a bearing's may be left out
+  std::optional<QuantityVector> axis;  // of a bearing
+  PlaceQuantity place;                 // pressure, temperature
   std::array<PlaceQuantity, 3> traction;
   Quantity number;  // rate of spin, reference temperature
   SourceLine line = 0;
 };
 
+/// The numbers of a support are here, not in its struct.
+struct SupportEntry {
+  loads::Support support;
+  std::optional<QuantityVector> displacement;
+  SourceLine line = 0;
+};
+
+struct PinEntry {
+  loads::RigidPin pin;
+  QuantityVector at;
+  std::optional<QuantityVector> displacement, rotation;
+  SourceLine line = 0;
+};
+
 struct LoadCaseEntry {
   std::string name;
-  std::vector<loads::Support> supports;
+  std::vector<SupportEntry> supports;
   std::vector<loads::SpringBed> springs;
+  std::vector<PinEntry> pins;  // that supports make; free ones are of loads
   std::vector<LoadEntry> loads;
   SourceLine line = 0;
 };

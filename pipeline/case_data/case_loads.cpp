@@ -12,7 +12,7 @@ namespace {
 
 loads::SurfaceTraction traction_of(const LoadEntry& load,
                                    const CaseValues& values) {
-  loads::SurfaceTraction result{.surface = load.surface};
+  loads::SurfaceTraction result;
   const auto& t = load.traction;
   if (!t[0].of_place && !t[1].of_place && !t[2].of_place) {
     result.traction = {values.at(t[0].quantity), values.at(t[1].quantity),
@@ -37,31 +37,97 @@ loads::SurfaceTraction traction_of(const LoadEntry& load,
   return result;
 }
 
+/// A rigid load and a rigid support on the same surfaces are of one pin.
+void add_pin(const loads::Surfaces& surfaces, loads::LoadCase& result) {
+  if (std::none_of(result.pins.begin(), result.pins.end(),
+                   [&](const loads::RigidPin& pin) {
+                     return pin.surfaces == surfaces;
+                   })) {
+    result.pins.push_back({.surfaces = surfaces});
+  }
+}
+
+/// A number that nothing would follow is a mistake.
+void require_fixed(const std::optional<QuantityVector>& numbers,
+                   const std::array<bool, 3>& fixed, const char* key,
+                   const CaseValues& values) {
+  for (std::size_t k = 0; numbers && k < 3; ++k) {
+    if (!fixed[k]) {
+      values.at(
+          (*numbers)[k], [](double x) { return x == 0.0; },
+          fmt::format("0 where {} does not hold that component", key).c_str());
+    }
+  }
+}
+
+std::optional<Vec3> value_of(const std::optional<QuantityVector>& numbers,
+                             const CaseValues& values) {
+  return numbers ? std::optional<Vec3>(values.at(*numbers)) : std::nullopt;
+}
+
+loads::Support support_of(const SupportEntry& entry, const CaseValues& values) {
+  loads::Support support = entry.support;
+  require_fixed(entry.displacement,
+                {support.fix_x, support.fix_y, support.fix_z}, "fix", values);
+  support.displacement = value_of(entry.displacement, values);
+  return support;
+}
+
+loads::RigidPin pin_of(const PinEntry& entry, const CaseValues& values) {
+  loads::RigidPin pin = entry.pin;
+  pin.point = values.at(entry.at);
+  require_fixed(entry.displacement, pin.fix, "fix", values);
+  require_fixed(entry.rotation, pin.fix_rotation, "fix_rotation", values);
+  pin.displacement = value_of(entry.displacement, values);
+  pin.rotation = value_of(entry.rotation, values);
+  return pin;
+}
+
 void add_load(const LoadEntry& load, const CaseValues& values,
               loads::LoadCase& result) {
+  if (load.by == LoadPath::Bearing) {
+    result.bearings.push_back(
+        {.surfaces = load.surfaces, .force = values.at(load.vector)});
+    if (load.has_at) {
+      result.bearings.back().point = values.at(load.at);
+    }
+    result.bearings.back().axis = value_of(load.axis, values);
+    return;
+  }
+  if (load.by == LoadPath::Rigid) {
+    add_pin(load.surfaces, result);
+  }
   switch (load.kind) {
     case LoadKind::Force:
-      result.forces.push_back({load.surface, values.at(load.vector)});
+      result.forces.push_back({load.surfaces, values.at(load.vector)});
       break;
     case LoadKind::Remote:
-      result.remote_loads.push_back({load.surface, values.at(load.at),
+      result.remote_loads.push_back({load.surfaces, values.at(load.at),
                                      values.at(load.vector),
                                      values.at(load.moment)});
       break;
     case LoadKind::Pressure: {
-      loads::SurfacePressure pressure{.surface = load.surface};
+      loads::SurfacePressure pressure;
       if (load.place.of_place) {
         pressure.field = values.field(load.place);
         pressure.slope = values.slope(load.place);
       } else {
         pressure.pressure = values.at(load.place.quantity);
       }
-      result.pressures.push_back(std::move(pressure));
+      for (const std::string& surface : load.surfaces) {
+        pressure.surface = surface;
+        result.pressures.push_back(pressure);
+      }
       break;
     }
-    case LoadKind::Traction:
-      result.tractions.push_back(traction_of(load, values));
+    case LoadKind::Traction: {
+      loads::SurfaceTraction traction = traction_of(load, values);
+      for (const std::string& surface : load.surfaces) {
+        traction.surface = surface;
+        result.tractions.push_back(traction);
+      }
       break;
+    }
     case LoadKind::Gravity:
       result.gravity += values.at(load.vector);
       break;
@@ -117,8 +183,14 @@ element::Material material_of(const Case& input, const MaterialEntry& entry,
 
 loads::LoadCase load_case_of(const LoadCaseEntry& entry,
                              const CaseValues& values) {
-  loads::LoadCase result{.name = entry.name, .supports = entry.supports};
+  loads::LoadCase result{.name = entry.name};
+  for (const SupportEntry& support : entry.supports) {
+    result.supports.push_back(support_of(support, values));
+  }
   result.springs = entry.springs;
+  for (const PinEntry& pin : entry.pins) {
+    result.pins.push_back(pin_of(pin, values));
+  }
   for (const LoadEntry& load : entry.loads) {
     add_load(load, values, result);
   }
@@ -130,10 +202,29 @@ bool has_weight(const loads::LoadCase& load_case) {
          (load_case.spin && load_case.spin->rate != 0.0);
 }
 
+namespace {
+
+bool moves_supports(const loads::LoadCase& load_case) {
+  return std::any_of(
+             load_case.supports.begin(), load_case.supports.end(),
+             [](const loads::Support& support) {
+               return !loads::value_of(support.displacement).isZero(0.0);
+             }) ||
+         std::any_of(load_case.pins.begin(), load_case.pins.end(),
+                     [](const loads::RigidPin& pin) {
+                       return !loads::value_of(pin.displacement).isZero(0.0) ||
+                              !loads::value_of(pin.rotation).isZero(0.0);
+                     });
+}
+
+}  // namespace
+
 bool is_loaded(const loads::LoadCase& load_case) {
   const auto& t = load_case.temperature;
-  return has_weight(load_case) ||
+  return has_weight(load_case) || moves_supports(load_case) ||
          (t && (t->field || t->value != t->reference)) ||
+         std::any_of(load_case.bearings.begin(), load_case.bearings.end(),
+                     [](const auto& b) { return b.force.norm() > 0.0; }) ||
          std::any_of(load_case.forces.begin(), load_case.forces.end(),
                      [](const auto& f) { return f.total.norm() > 0.0; }) ||
          std::any_of(

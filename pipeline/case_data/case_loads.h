@@ -12,7 +12,8 @@ element::Material material_of(const Case& input, const MaterialEntry& entry,
 loads::LoadCase load_case_of(const LoadCaseEntry& entry,
                              const CaseValues& values);
 
-/// Some load of it is not 0 (expressions of the place count as loads).
+/// Some load or enforced displacement of it is not 0 (expressions of the place
+/// count as loads).
 bool is_loaded(const loads::LoadCase& load_case);
 
 /// Density matters to how the part is loaded: gravity or spin acts.

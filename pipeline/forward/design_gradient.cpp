@@ -7,6 +7,7 @@
 #include "fea/elastic/elastic_gradient.h"
 #include "fea/loads/load_rates.h"
 #include "fea/loads/material_rates.h"
+#include "fea/supports/enforced.h"
 #include "pipeline/case_data/case_values.h"
 #include "pipeline/case_data/composed_responses.h"
 #include "pipeline/case_data/response_entries.h"
@@ -175,10 +176,11 @@ void Adjoint::through_equations(const CasePartials& partials,
   const ResponseContext& fields = in_.context;
   const auto c = static_cast<std::size_t>(backward.load_case);
   const loads::LoadCase& load_case = fields.inputs.load_cases[c];
+  const loads::AdjointPair pair{fields.solution.displacements[c],
+                                fields.solution.reactions[c], backward.lambda,
+                                backward.adjoint_reactions};
   const Points state = elastic::residual_gradient(
-      fields.mesh, fields.inputs.materials, load_case,
-      {fields.solution.displacements[c], fields.solution.reactions[c],
-       backward.lambda, backward.adjoint_reactions});
+      fields.mesh, fields.inputs.materials, load_case, pair);
   for (std::size_t i = 0; i < state.size(); ++i) {
     by_nodes[i] += state[i];
   }
@@ -188,6 +190,8 @@ void Adjoint::through_equations(const CasePartials& partials,
   }
   backward.loads = loads::load_gradient(fields.mesh, fields.inputs.materials,
                                         load_case, by_forces);
+  supports::add_enforced_gradient(fields.mesh, load_case, pair,
+                                  backward.loads->by_number);
   loads::add_temperature_gradient(fields.mesh, load_case,
                                   partials.by_temperature, *backward.loads);
 }

@@ -23,27 +23,36 @@ namespace meniscus::forward {
 namespace {
 
 /// The load case's supports under the forces `by_displacement`, dJ/du, times
-/// `scale`: as large as the load case's own, for the solver starts from that
-/// one's solution.
+/// `scale`: as large as the load case's own (its reactions, where displacements
+/// alone act), for the solver starts from that one's solution.
 struct DualLoad {
   loads::LoadCase load;
   double scale = 1.0;
 };
 DualLoad dual_load(const EvaluationFields& fields,
-                   const loads::LoadCase& load_case,
+                   const loads::LoadCase& load_case, const VectorX& reactions,
                    const VectorX& by_displacement) {
   loads::LoadCase dual = load_case;
   dual.forces.clear();
   dual.pressures.clear();
   dual.tractions.clear();
   dual.remote_loads.clear();
+  dual.bearings.clear();
   dual.gravity.setZero();
   dual.spin.reset();
   dual.temperature.reset();
-  const double scale =
+  for (loads::Support& support : dual.supports) {
+    support.displacement.reset();
+  }
+  for (loads::RigidPin& pin : dual.pins) {
+    pin.displacement.reset();
+    pin.rotation.reset();
+  }
+  const double force =
       loads::nodal_forces(fields.mesh, load_case, fields.inputs.materials)
-          .norm() /
-      by_displacement.norm();
+          .norm();
+  const double scale =
+      (force > 0.0 ? force : reactions.norm()) / by_displacement.norm();
   dual.nodal = scale * by_displacement;
   return {std::move(dual), scale};
 }
@@ -236,7 +245,8 @@ bool ResponseErrors::solve(const std::vector<std::vector<Dual>>& duals,
   for (std::size_t k = 0; k < loads.size(); ++k) {
     if (round < duals[k].size()) {
       DualLoad dual =
-          dual_load(fields_, loads[k], duals[k][round].by_displacement);
+          dual_load(fields_, loads[k], fields_.solution.reactions[k],
+                    duals[k][round].by_displacement);
       loads[k] = std::move(dual.load);
       scale[k] = dual.scale;
     }

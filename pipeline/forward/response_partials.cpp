@@ -113,14 +113,17 @@ ResponsePartials rotation(const ResponseTask& task) {
 }
 
 /// Half the work of the loads is the strain energy where it all goes into the
-/// solid.
+/// solid and nothing else does work. Enforced displacements make the solution
+/// another than the loads' own: it is not its adjoint then.
 ResponsePartials energy(const ResponseTask& task) {
   const loads::LoadCase& load_case =
       task.fields.inputs.load_cases[task.response.load_case];
   const VectorX& u = displacement(task);
   const bool strain =
       task.response.kind == case_data::ResponseKind::StrainEnergy;
-  if (strain && (!load_case.springs.empty() || load_case.temperature)) {
+  const bool enforced = loads::enforces(load_case);
+  if (strain &&
+      (!load_case.springs.empty() || load_case.temperature || enforced)) {
     return to_partials(
         functionals::strain_energy_functional(task.fields.mesh, materials(task),
                                               load_case, u, task.derivatives),
@@ -136,7 +139,7 @@ ResponsePartials energy(const ResponseTask& task) {
     by_node *= share;
   }
   if (task.derivatives == element::Derivatives::All) {
-    result.cases.front().self_adjoint = share;
+    result.cases.front().self_adjoint = enforced ? 0.0 : share;
     result.cases.front().by_forces = share * u;
   }
   return result;

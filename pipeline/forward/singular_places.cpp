@@ -12,7 +12,8 @@ namespace {
 
 constexpr double kLargestPoisson = 0.49;
 
-/// One char per face of the mesh: 1 where no component of displacement is free.
+/// One char per face of the mesh: 1 where no component of displacement is free,
+/// or none but of a rigid motion.
 std::vector<char> held_faces(const TetMesh& mesh, const loads::LoadCase& load) {
   std::vector<std::array<bool, 3>> fixed(mesh.labels.size());
   for (const loads::Support& support : load.supports) {
@@ -20,6 +21,13 @@ std::vector<char> held_faces(const TetMesh& mesh, const loads::LoadCase& load) {
     if (label >= 0 && support.kind == loads::SupportKind::Components) {
       auto& f = fixed[static_cast<std::size_t>(label)];
       f = {f[0] || support.fix_x, f[1] || support.fix_y, f[2] || support.fix_z};
+    }
+  }
+  for (const loads::RigidPin& pin : load.pins) {
+    for (const std::string& surface : pin.surfaces) {
+      if (const int label = mesh.label_of(surface); label >= 0) {
+        fixed[static_cast<std::size_t>(label)] = {true, true, true};
+      }
     }
   }
   std::vector<char> held;

@@ -156,6 +156,20 @@ std::optional<std::string> CaseTable::choice(const char* key) const {
   return std::nullopt;
 }
 
+std::vector<std::string> CaseTable::name_or_names(const char* key) const {
+  if (!has(key)) {
+    return {};
+  }
+  if (node(key)->is_array()) {
+    return names(key);
+  }
+  if (!node(key)->is_string()) {
+    note(key, "a name, or a list of names");
+    return {};
+  }
+  return {*text(key)};
+}
+
 std::vector<std::string> CaseTable::names_or_numbers(const char* key) const {
   std::vector<std::string> result;
   if (!has(key)) {

@@ -84,6 +84,8 @@ class CaseTable {
   std::optional<std::string> choice(const char* key) const;
   /// Names, and { name = "x_{i}", repeat = n } for several.
   std::vector<std::string> names(const char* key) const;
+  /// One, or as names().
+  std::vector<std::string> name_or_names(const char* key) const;
   /// One or several; numbers as text.
   std::vector<std::string> names_or_numbers(const char* key) const;
   std::optional<bool> flag(const char* key) const;

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -16,31 +17,75 @@ void note(CaseContext& context, const CaseTable& table, const char* key,
                        fmt::format("{}.{} {}", table.path(), key, what));
 }
 
+/// Some of "xyz"; notes what else there is.
+std::array<bool, 3> components_of(CaseContext& context, const CaseTable& table,
+                                  const char* key, const char* expected) {
+  const std::string text = table.text(key).value_or("");
+  if (table.has(key) && table.text(key) &&
+      (text.empty() || text.find_first_not_of("xyz") != std::string::npos)) {
+    note(context, table, key,
+         fmt::format("is '{}'; expected some of {}", text, expected));
+  }
+  return {text.find('x') != std::string::npos,
+          text.find('y') != std::string::npos,
+          text.find('z') != std::string::npos};
+}
+
+void refuse_foreign(CaseContext& context, const CaseTable& table,
+                    const std::vector<const char*>& keys,
+                    const std::string& what) {
+  for (const char* key : keys) {
+    if (table.has(key)) {
+      note(context, table, key,
+           fmt::format("does not belong to {}; take it out", what));
+    }
+  }
+}
+
 void read_fix(CaseContext& context, const CaseTable& table,
-              loads::Support& support) {
+              case_data::SupportEntry& entry) {
+  loads::Support& support = entry.support;
   const auto fix = table.text("fix");
+  refuse_foreign(context, table, {"at", "fix_rotation", "rotation"},
+                 "a support by nodes (by = \"rigid\" has it)");
   if (!fix) {
     return;
   }
   if (*fix == "normal" || *fix == "symmetry") {
     support.kind = *fix == "normal" ? loads::SupportKind::Normal
                                     : loads::SupportKind::Symmetry;
-    if (table.has("axes")) {
-      note(context, table, "axes",
-           fmt::format("does not belong to fix = \"{}\"; take it out", *fix));
-    }
+    refuse_foreign(context, table, {"axes", "displacement"},
+                   fmt::format("fix = \"{}\"", *fix));
     return;
   }
-  if (fix->empty() || fix->find_first_not_of("xyz") != std::string::npos) {
-    note(context, table, "fix",
-         fmt::format("is '{}'; expected some of \"xyz\", or \"normal\" or "
-                     "\"symmetry\"",
-                     *fix));
-  }
-  support.fix_x = fix->find('x') != std::string::npos;
-  support.fix_y = fix->find('y') != std::string::npos;
-  support.fix_z = fix->find('z') != std::string::npos;
+  const auto fixed = components_of(context, table, "fix",
+                                   "\"xyz\", or \"normal\" or \"symmetry\"");
+  support.fix_x = fixed[0];
+  support.fix_y = fixed[1];
+  support.fix_z = fixed[2];
   support.axes = table.axes("axes");
+  entry.displacement = table.vector("displacement");
+}
+
+case_data::PinEntry read_pin(CaseContext& context, const CaseTable& table,
+                             const loads::Surfaces& surfaces) {
+  case_data::PinEntry entry{.pin = {.surfaces = surfaces},
+                            .line = table.line()};
+  entry.pin.fix = components_of(context, table, "fix", "\"xyz\"");
+  entry.pin.fix_rotation =
+      components_of(context, table, "fix_rotation", "\"xyz\"");
+  entry.pin.axes = table.axes("axes");
+  entry.at = table.vector_or_zero("at");
+  entry.displacement = table.vector("displacement");
+  entry.rotation = table.vector("rotation");
+  if (!table.has("at")) {
+    context.problems.add(
+        table.line(),
+        fmt::format("{} on '{}' is rigid and has no 'at' (the point that is "
+                    "held); add it",
+                    table.path(), surfaces.text()));
+  }
+  return entry;
 }
 
 loads::SpringBed read_springs(CaseContext& context, const CaseTable& table) {
@@ -68,24 +113,87 @@ loads::SpringBed read_springs(CaseContext& context, const CaseTable& table) {
 void read_support(CaseContext& context, const CaseTable& table,
                   const case_data::Case& result,
                   case_data::LoadCaseEntry& load_case) {
-  const std::string surface = surface_on(context, table, result);
+  const loads::Surfaces surfaces = surfaces_on(context, table, result);
   const bool springs = table.has("stiffness") || table.has("normal_stiffness");
-  if (table.has("fix") == springs) {
+  const bool rigid = table.choice("by") == "rigid";
+  const bool fixes = table.has("fix") || (rigid && table.has("fix_rotation"));
+  if (fixes == springs) {
     context.problems.add(
         table.line(),
         fmt::format(
             "{} on '{}' has {}; expected one of fix and stiffness or "
             "normal_stiffness",
-            table.path(), surface,
+            table.path(), surfaces.text(),
             springs ? "both fix and springs" : "neither fix nor springs"));
   } else if (springs) {
+    refuse_foreign(context, table,
+                   {"by", "displacement", "at", "fix_rotation", "rotation"},
+                   "springs");
     loads::SpringBed bed = read_springs(context, table);
-    bed.surface = surface;
-    load_case.springs.push_back(std::move(bed));
+    if (surfaces.size() > 1 && bed.measure == loads::SpringMeasure::Total) {
+      note(context, table, "stiffness_of",
+           "is total on several surfaces; give each an entry with its share");
+    }
+    for (const std::string& surface : surfaces) {
+      bed.surface = surface;
+      load_case.springs.push_back(bed);
+    }
+  } else if (rigid) {
+    load_case.pins.push_back(read_pin(context, table, surfaces));
   } else {
-    loads::Support support{.surface = surface};
-    read_fix(context, table, support);
-    load_case.supports.push_back(std::move(support));
+    case_data::SupportEntry entry{.line = table.line()};
+    read_fix(context, table, entry);
+    for (const std::string& surface : surfaces) {
+      entry.support.surface = surface;
+      load_case.supports.push_back(entry);
+    }
+  }
+}
+
+/// A surface is of one rigid pin, and of no support beside it.
+void check_pins(CaseContext& context,
+                const case_data::LoadCaseEntry& load_case) {
+  struct Use {
+    loads::Surfaces surfaces;
+    bool support;
+    case_data::SourceLine line;
+  };
+  std::vector<Use> uses;
+  for (const case_data::PinEntry& pin : load_case.pins) {
+    uses.push_back({pin.pin.surfaces, true, pin.line});
+  }
+  for (const case_data::LoadEntry& load : load_case.loads) {
+    if (load.by == case_data::LoadPath::Rigid) {
+      uses.push_back({load.surfaces, false, load.line});
+    }
+  }
+  for (std::size_t a = 0; a < uses.size(); ++a) {
+    for (const std::string& surface : uses[a].surfaces) {
+      for (std::size_t b = 0; b < a; ++b) {
+        const loads::Surfaces& other = uses[b].surfaces;
+        const bool shared =
+            std::find(other.begin(), other.end(), surface) != other.end();
+        if (shared && (other != uses[a].surfaces ||
+                       (uses[a].support && uses[b].support))) {
+          context.problems.add(
+              uses[a].line,
+              fmt::format("surface '{}' is of two rigid pins of load case "
+                          "'{}'; name the same surfaces in both, and hold "
+                          "them in one entry",
+                          surface, load_case.name));
+        }
+      }
+      for (const case_data::SupportEntry& support : load_case.supports) {
+        if (support.support.surface == surface) {
+          context.problems.add(
+              support.line,
+              fmt::format("surface '{}' is of a rigid pin of load case '{}' "
+                          "and held by nodes; give the support by = \"rigid\", "
+                          "too",
+                          surface, load_case.name));
+        }
+      }
+    }
   }
 }
 
@@ -99,8 +207,11 @@ struct LoadRow {
 
 const std::vector<LoadRow>& load_kinds() {
   static const std::vector<LoadRow> kinds = {
-      {"force", case_data::LoadKind::Force, true, {"at", "moment"}},
-      {"moment", case_data::LoadKind::Remote, true, {"at", "force"}},
+      {"force",
+       case_data::LoadKind::Force,
+       true,
+       {"at", "moment", "by", "axis"}},
+      {"moment", case_data::LoadKind::Remote, true, {"at", "force", "by"}},
       {"pressure", case_data::LoadKind::Pressure, true, {}},
       {"traction", case_data::LoadKind::Traction, true, {}},
       {"gravity", case_data::LoadKind::Gravity, false, {}},
@@ -121,7 +232,7 @@ std::vector<std::string> load_names(bool on_surface) {
 
 /// The load's key: force before moment; empty, and a note, when it is not one.
 std::string load_key(CaseContext& context, const CaseTable& table,
-                     const std::string& surface) {
+                     const loads::Surfaces& surfaces) {
   std::vector<std::string> found;
   for (const LoadRow& row : load_kinds()) {
     if (table.has(row.name) &&
@@ -137,7 +248,7 @@ std::string load_key(CaseContext& context, const CaseTable& table,
       table.line(),
       fmt::format(
           "{}{} has {}; expected one of {}", table.path(),
-          surface.empty() ? "" : fmt::format(" on '{}'", surface),
+          surfaces.empty() ? "" : fmt::format(" on '{}'", surfaces.text()),
           found.empty() ? "no load"
                         : fmt::format("{}", fmt::join(found, " and ")),
           fmt::join(split_choices(case_data::choices_of(load_kinds())), ", ")));
@@ -183,12 +294,30 @@ void check_load_keys(CaseContext& context, const CaseTable& table,
   }
 }
 
+case_data::LoadPath load_path(CaseContext& context, const CaseTable& table,
+                              const std::string& key) {
+  const std::string by = table.choice("by").value_or("spread");
+  if (by != "bearing") {
+    if (key == "force") {
+      refuse_foreign(context, table, {"axis"}, "a force that is " + by);
+    }
+    return by == "rigid" ? case_data::LoadPath::Rigid
+                         : case_data::LoadPath::Spread;
+  }
+  if (key != "force") {
+    note(context, table, "by",
+         "is bearing: a pin that presses carries a force, no moment alone");
+  }
+  refuse_foreign(context, table, {"moment"}, "a force that is bearing");
+  return case_data::LoadPath::Bearing;
+}
+
 void read_load(CaseContext& context, const CaseTable& table,
                const case_data::Case& result,
                case_data::LoadCaseEntry& load_case) {
-  case_data::LoadEntry load{.surface = surface_on(context, table, result),
+  case_data::LoadEntry load{.surfaces = surfaces_on(context, table, result),
                             .line = table.line()};
-  const std::string key = load_key(context, table, load.surface);
+  const std::string key = load_key(context, table, load.surfaces);
   if (key.empty()) {
     return;
   }
@@ -196,6 +325,11 @@ void read_load(CaseContext& context, const CaseTable& table,
   load.kind = case_data::row_named(load_kinds(), key).kind;
   if (key == "force" && (table.has("at") || table.has("moment"))) {
     load.kind = case_data::LoadKind::Remote;
+  }
+  load.by = load_path(context, table, key);
+  load.has_at = table.has("at");
+  if (load.by == case_data::LoadPath::Bearing) {
+    load.axis = table.vector("axis");
   }
   load.at = table.vector_or_zero("at");
   load.moment = table.vector_or_zero("moment");
@@ -227,8 +361,9 @@ TableSpec load_table() {
       TableNeed::Optional,
       fmt::format("A load: {} on a surface, or {} of all bodies",
                   either_of(load_names(true)), either_of(load_names(false))),
-      {{"on", K::Name, D::None, false,
-        fmt::format("of {}: the surface that is loaded",
+      {{"on", K::NameOrNames, D::None, false,
+        fmt::format("of {}: the surface that is loaded, or a list: force and "
+                    "moment are of all together, pressure and traction of each",
                     fmt::join(load_names(true), ", "))},
        {"force", K::Vector, D::Force, false,
         "total, spread as uniform traction; with `at` through that point"},
@@ -237,12 +372,19 @@ TableSpec load_table() {
        {"at", K::Vector, D::Length, false,
         "of force and moment: the point they act through; of spin: on the "
         "axis"},
+       {"by", K::Choice, D::None, false,
+        "how the surfaces take force and moment: spread, without being "
+        "stiffened (when left out); rigid, as one rigid body; or bearing, a "
+        "force that a round pin presses against one half of its bores",
+        "spread|rigid|bearing"},
        {"pressure", K::Place, D::Pressure, false, "positive into the material"},
        {"traction", K::PlaceVector, D::Pressure, false, "force per area"},
        {"gravity", K::Vector, D::Acceleration, false, "force per mass"},
        {"spin", K::Quantity, D::Rate, false,
         "angular velocity in radians per time"},
-       {"axis", K::Vector, std::nullopt, false, "of spin; any length but 0"},
+       {"axis", K::Vector, std::nullopt, false,
+        "of spin and of a bearing force (the bores' own when left out); any "
+        "length but 0"},
        {"temperature", K::Place, D::None, false,
         "of all bodies; they expand from the reference"},
        {"reference", K::Quantity, D::None, false,
@@ -295,12 +437,12 @@ std::vector<std::string> with_sides(std::vector<std::string> known) {
 
 }  // namespace
 
-std::string surface_on(CaseContext& context, const CaseTable& table,
-                       const case_data::Case& result, const char* key) {
-  std::string surface = table.text(key).value_or("");
-  if (!table.has(key)) {
-    return surface;
-  }
+namespace {
+
+/// The surface of that name; notes one that nothing can act on.
+std::string known_surface(CaseContext& context, const CaseTable& table,
+                          const case_data::Case& result, const char* key,
+                          std::string surface) {
   const std::vector<std::string> known = case_data::surface_names(result);
   surface = without_side(surface, known);
   int bodies = 0;
@@ -329,6 +471,30 @@ std::string surface_on(CaseContext& context, const CaseTable& table,
   return surface;
 }
 
+}  // namespace
+
+std::string surface_on(CaseContext& context, const CaseTable& table,
+                       const case_data::Case& result, const char* key) {
+  const std::string surface = table.text(key).value_or("");
+  return table.has(key) ? known_surface(context, table, result, key, surface)
+                        : surface;
+}
+
+loads::Surfaces surfaces_on(CaseContext& context, const CaseTable& table,
+                            const case_data::Case& result) {
+  loads::Surfaces surfaces;
+  for (const std::string& name : table.name_or_names("on")) {
+    std::string surface = known_surface(context, table, result, "on", name);
+    if (std::find(surfaces.begin(), surfaces.end(), surface) !=
+        surfaces.end()) {
+      note(context, table, "on", fmt::format("has '{}' twice", name));
+    } else {
+      surfaces.push_back(std::move(surface));
+    }
+  }
+  return surfaces;
+}
+
 void read_load_cases(CaseContext& context, const toml::table& root,
                      case_data::Case& result) {
   for (const CaseTable& table : named_tables(context, root, "load_cases")) {
@@ -340,6 +506,7 @@ void read_load_cases(CaseContext& context, const toml::table& root,
     for (const CaseTable& load : table.tables("loads", "load")) {
       read_load(context, load, result, load_case);
     }
+    check_pins(context, load_case);
     result.load_cases.push_back(std::move(load_case));
   }
 }

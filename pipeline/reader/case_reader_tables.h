@@ -61,10 +61,14 @@ void read_walls(CaseContext& context, const toml::table& root,
 void read_fields(CaseContext& context, const toml::table& root,
                  case_data::Case& result);
 
-/// The surface that a load, support or response names with `key`: a film
-/// or solid that encloses a body; empty without the key.
+/// The surface that a response or zone names with `key`: a film or solid that
+/// encloses a body; empty without the key.
 std::string surface_on(CaseContext& context, const CaseTable& table,
                        const case_data::Case& result, const char* key = "on");
+
+/// The same of a load or support, which may name several with `on`.
+loads::Surfaces surfaces_on(CaseContext& context, const CaseTable& table,
+                            const case_data::Case& result);
 
 /// Supports and loads; after the geometry.
 void read_load_cases(CaseContext& context, const toml::table& root,

@@ -16,6 +16,7 @@ enum class KeyType {
   Choice,          // one of `choices`
   Name,            // of something defined elsewhere in the file
   Names,           // array of names
+  NameOrNames,     // one, or an array of them
   NamesOrNumbers,  // one or an array of them, of things in a file
   Integer,
   Counts,          // one to three integers

@@ -22,6 +22,8 @@ const char* type_text(const KeySpec& key) {
       return "name";
     case K::Names:
       return "names";
+    case K::NameOrNames:
+      return "name or names";
     case K::NamesOrNumbers:
       return "names or numbers";
     case K::Integer:
@@ -73,14 +75,14 @@ const char* type_text(const KeySpec& key) {
 }
 
 const char* dimension_text(const KeySpec& key) {
-  const bool quantity = key.type != K::Text && key.type != K::Choice &&
-                        key.type != K::Name && key.type != K::Names &&
-                        key.type != K::NamesOrNumbers &&
-                        key.type != K::Integer && key.type != K::Counts &&
-                        key.type != K::Facets && key.type != K::Flag &&
-                        key.type != K::IntegerMap && key.type != K::Supports &&
-                        key.type != K::Loads && key.type != K::Zones &&
-                        key.type != K::Constraints && key.type != K::Members;
+  const bool quantity =
+      key.type != K::Text && key.type != K::Choice && key.type != K::Name &&
+      key.type != K::Names && key.type != K::NameOrNames &&
+      key.type != K::NamesOrNumbers && key.type != K::Integer &&
+      key.type != K::Counts && key.type != K::Facets && key.type != K::Flag &&
+      key.type != K::IntegerMap && key.type != K::Supports &&
+      key.type != K::Loads && key.type != K::Zones &&
+      key.type != K::Constraints && key.type != K::Members;
   if (key.type == K::ConstantMap) {
     return "the response's";
   }
@@ -169,6 +171,11 @@ Json type_schema(const KeySpec& key) {
       return {{"enum", split_choices(key.choices)}};
     case K::Names:
       return array({{"anyOf", {text, repeated("name", text)}}}, 1, 0);
+    case K::NameOrNames: {
+      const Json several =
+          array({{"anyOf", {text, repeated("name", text)}}}, 1, 0);
+      return {{"anyOf", {text, several}}};
+    }
     case K::NamesOrNumbers: {
       const Json one = {{"type", {"string", "integer"}}};
       return {{"anyOf", {one, array(one, 1, 0)}}};

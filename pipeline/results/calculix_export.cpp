@@ -3,12 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "core/error.h"
 #include "fea/loads/body_loads.h"
 #include "fea/loads/loads.h"
+#include "fea/loads/support.h"
+#include "fea/supports/enforced.h"
+#include "fea/supports/pins.h"
 #include "fea/supports/springs.h"
 #include "fea/supports/supports.h"
 
@@ -34,7 +38,7 @@ io::DeckMaterial material_of(const element::Material& m) {
 }
 
 bool along_axes(const loads::LoadCase& load_case) {
-  return load_case.held_nodes.empty() &&
+  return load_case.held_nodes.empty() && load_case.pins.empty() &&
          std::all_of(load_case.supports.begin(), load_case.supports.end(),
                      [](const loads::Support& s) {
                        return s.kind == loads::SupportKind::Components &&
@@ -79,24 +83,39 @@ struct HeldNodes {
 HeldNodes held_nodes(const TetMesh& mesh, const loads::LoadCase& load_case) {
   const solver::NodeFreedom freedom =
       supports::node_freedom(mesh, supports::held_directions(mesh, load_case));
+  const VectorX enforced = supports::enforced_displacement(mesh, load_case);
   HeldNodes result;
-  std::map<std::array<bool, 3>, std::vector<int>> fixed;
+  using Held = std::pair<std::array<bool, 3>, std::array<double, 3>>;
+  std::map<Held, std::vector<int>> fixed;
   for (std::size_t h = 0; h < freedom.held.size(); ++h) {
     std::array<bool, 3> fix{};
+    std::array<double, 3> at{};
+    const Vec3 u = enforced.size() == 0
+                       ? Vec3(Vec3::Zero())
+                       : Vec3(enforced.segment<3>(3L * freedom.held[h]));
     for (const io::DeckEquation& row :
          solved_rows(freedom.held[h], freedom.projector[h])) {
       if ((row.coefficients.array() != 0.0).count() == 1) {
         fix[row.dependent] = true;
+        at[row.dependent] = u[row.dependent];
+      } else if (std::abs(row.coefficients.dot(u)) > kNothing * u.norm()) {
+        throw InvalidInput(fmt::format(
+            "load case '{}' enforces a displacement along an oblique "
+            "direction, which decks do not hold; export a case whose supports "
+            "with a displacement are along x, y, z",
+            load_case.name));
       } else {
         result.equations.push_back(row);
       }
     }
     if (fix[0] || fix[1] || fix[2]) {
-      fixed[fix].push_back(freedom.held[h]);
+      fixed[{fix, at}].push_back(freedom.held[h]);
     }
   }
-  for (const auto& [fix, nodes] : fixed) {
-    result.supports.push_back({"", nodes, fix[0], fix[1], fix[2]});
+  for (const auto& [held, nodes] : fixed) {
+    const auto& [fix, at] = held;
+    result.supports.push_back(
+        {"", nodes, fix[0], fix[1], fix[2], {at[0], at[1], at[2]}});
   }
   return result;
 }
@@ -118,6 +137,7 @@ void add_loads(const loads::LoadCase& load_case, const TetMesh& mesh,
   rest.forces = load_case.forces;
   rest.tractions = load_case.tractions;
   rest.remote_loads = load_case.remote_loads;
+  rest.bearings = load_case.bearings;
   for (const loads::SurfacePressure& p : load_case.pressures) {
     if (p.field) {
       rest.pressures.push_back(p);
@@ -126,8 +146,8 @@ void add_loads(const loads::LoadCase& load_case, const TetMesh& mesh,
     }
   }
   if (!rest.forces.empty() || !rest.tractions.empty() ||
-      !rest.remote_loads.empty() || !rest.pressures.empty() ||
-      rest.nodal.size() != 0) {
+      !rest.remote_loads.empty() || !rest.bearings.empty() ||
+      !rest.pressures.empty() || rest.nodal.size() != 0) {
     step.nodal_forces = loads::nodal_forces(mesh, rest);
   }
   step.gravity = load_case.gravity;
@@ -173,6 +193,61 @@ void add_springs(const std::vector<loads::LoadCase>& load_cases,
   }
 }
 
+/// Same nodes; and the same frame where both hold the pin.
+bool same_pins(const std::vector<io::DeckPin>& a,
+               const std::vector<supports::PinFrame>& b) {
+  return std::equal(
+      a.begin(), a.end(), b.begin(), b.end(),
+      [](const io::DeckPin& x, const supports::PinFrame& y) {
+        return x.nodes == y.nodes &&
+               (y.is_free() || (x.point == y.point && x.axes == y.axes));
+      });
+}
+
+/// The pins of all load cases, each in the frame that holds it.
+std::vector<io::DeckPin> pins_of(const std::vector<loads::LoadCase>& load_cases,
+                                 const TetMesh& mesh) {
+  std::vector<io::DeckPin> pins;
+  for (std::size_t c = 0; c < load_cases.size(); ++c) {
+    const std::vector<supports::PinFrame> frames =
+        supports::pin_frames(mesh, load_cases[c]);
+    for (std::size_t p = 0; p < frames.size(); ++p) {
+      const supports::PinFrame& frame = frames[p];
+      if (c == 0) {
+        pins.push_back({frame.nodes, frame.point, frame.axes});
+      } else if (p < pins.size() && !frame.is_free() &&
+                 supports::pin_frames(mesh, load_cases[0])[p].is_free()) {
+        pins[p].point = frame.point;
+        pins[p].axes = frame.axes;
+      }
+    }
+  }
+  return pins;
+}
+
+void add_pins(const loads::LoadCase& load_case, const TetMesh& mesh,
+              const io::CalculixDeck& deck, io::DeckStep& step) {
+  const std::vector<supports::PinFrame> frames =
+      supports::pin_frames(mesh, load_case);
+  if (!same_pins(deck.pins, frames)) {
+    throw InvalidInput(fmt::format(
+        "load case '{}' has other rigid pins than the load cases beside it, or "
+        "holds them at another point; a deck has one set of them for all its "
+        "steps: export a case with one of these load cases",
+        load_case.name));
+  }
+  for (std::size_t p = 0; p < frames.size(); ++p) {
+    io::DeckPinSupport& held = step.pins.emplace_back();
+    held.fixed = frames[p].fixed;
+    for (int k = 0; k < 6; ++k) {
+      held.value[static_cast<std::size_t>(k)] =
+          frames[p].fixed[static_cast<std::size_t>(k)]
+              ? supports::pin_value(load_case.pins[p], k)
+              : 0.0;
+    }
+  }
+}
+
 }  // namespace
 
 io::CalculixDeck calculix_deck_of(
@@ -182,15 +257,18 @@ io::CalculixDeck calculix_deck_of(
   for (const element::Material& m : materials) {
     deck.materials.push_back(material_of(m));
   }
+  deck.pins = pins_of(load_cases, mesh);
   for (const loads::LoadCase& load_case : load_cases) {
     io::DeckStep step{.name = load_case.name};
     std::vector<io::DeckEquation> equations;
     if (along_axes(load_case)) {
       for (const loads::Support& s : load_case.supports) {
-        step.supports.push_back({.surface = s.surface,
-                                 .fix_x = s.fix_x,
-                                 .fix_y = s.fix_y,
-                                 .fix_z = s.fix_z});
+        step.supports.push_back(
+            {.surface = s.surface,
+             .fix_x = s.fix_x,
+             .fix_y = s.fix_y,
+             .fix_z = s.fix_z,
+             .displacement = loads::value_of(s.displacement)});
       }
     } else {
       HeldNodes held = held_nodes(mesh, load_case);
@@ -206,6 +284,7 @@ io::CalculixDeck calculix_deck_of(
     }
     deck.equations = std::move(equations);
     add_loads(load_case, mesh, step);
+    add_pins(load_case, mesh, deck, step);
     add_springs(load_cases, deck.steps.size(), mesh, deck);
     deck.steps.push_back(std::move(step));
   }

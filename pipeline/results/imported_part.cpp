@@ -75,10 +75,17 @@ std::set<std::string> surfaces_used(const case_data::EvaluatedCase& numbers) {
       }
     };
     add(load_case.supports);
-    add(load_case.forces);
+    const auto add_together = [&](const auto& entries) {
+      for (const auto& entry : entries) {
+        used.insert(entry.surfaces.begin(), entry.surfaces.end());
+      }
+    };
+    add_together(load_case.forces);
     add(load_case.pressures);
     add(load_case.tractions);
-    add(load_case.remote_loads);
+    add_together(load_case.remote_loads);
+    add_together(load_case.bearings);
+    add_together(load_case.pins);
     add(load_case.springs);
   }
   return used;

@@ -66,10 +66,29 @@ std::string support_label(const loads::Support& support) {
   return label;
 }
 
+std::string pin_label(const loads::RigidPin& pin) {
+  std::string held;
+  std::string turns;
+  for (std::size_t k = 0; k < 3; ++k) {
+    held += pin.fix[k] ? std::string(1, "xyz"[k]) : "";
+    turns += pin.fix_rotation[k] ? std::string(1, "xyz"[k]) : "";
+  }
+  std::string label = "rigid";
+  label += held.empty() ? "" : ", held " + held;
+  label += turns.empty() ? "" : ", no turn about " + turns;
+  return label;
+}
+
 void add_supports(const loads::LoadCase& load_case, picture::PictureJob& job) {
   for (const loads::Support& support : load_case.supports) {
     job.supports.push_back(support.surface);
     job.support_labels.push_back(support_label(support));
+  }
+  for (const loads::RigidPin& pin : load_case.pins) {
+    for (const std::string& surface : pin.surfaces) {
+      job.supports.push_back(surface);
+      job.support_labels.push_back(pin_label(pin));
+    }
   }
   for (const loads::SpringBed& bed : load_case.springs) {
     job.supports.push_back(bed.surface);
@@ -80,20 +99,26 @@ void add_supports(const loads::LoadCase& load_case, picture::PictureJob& job) {
 void add_forces(const loads::LoadCase& load_case, const UnitSystem& units,
                 picture::PictureJob& job) {
   using Kind = picture::PictureLoadKind;
-  const auto add = [&](const std::string& surface, const Vec3& direction,
+  const auto add = [&](const loads::Surfaces& surfaces, const Vec3& direction,
                        Kind kind, const std::string& label) {
-    if (direction.norm() > 0.0) {
-      job.loads.push_back({surface, direction, label, kind});
+    for (const std::string& surface : surfaces) {
+      if (direction.norm() > 0.0) {
+        job.loads.push_back({surface, direction, label, kind});
+      }
     }
   };
   for (const loads::RemoteLoad& load : load_case.remote_loads) {
-    add(load.surface, load.force, Kind::Force,
+    add(load.surfaces, load.force, Kind::Force,
         load_label(load.force.norm(), units.force));
-    add(load.surface, load.moment, Kind::Moment,
+    add(load.surfaces, load.moment, Kind::Moment,
         moment_label(load.moment.norm(), units));
   }
+  for (const loads::BearingLoad& load : load_case.bearings) {
+    add(load.surfaces, load.force, Kind::Force,
+        load_label(load.force.norm(), units.force));
+  }
   for (const loads::SurfaceForce& force : load_case.forces) {
-    add(force.surface, force.total, Kind::Force,
+    add(force.surfaces, force.total, Kind::Force,
         load_label(force.total.norm(), units.force));
   }
   // Of fields the arrows say where, the label that it changes.

@@ -168,14 +168,23 @@ Json page_loads(const case_data::Case& input,
           {{"on", on}, {"kind", kind}, {"vector", std::move(vector)}});
     };
     for (const loads::SurfaceForce& force : load_case.forces) {
-      add(force.surface, "force", vector_json(force.total));
+      for (const std::string& on : force.surfaces) {
+        add(on, "force", vector_json(force.total));
+      }
+    }
+    for (const loads::BearingLoad& load : load_case.bearings) {
+      for (const std::string& on : load.surfaces) {
+        add(on, "force", vector_json(load.force));
+      }
     }
     for (const loads::RemoteLoad& load : load_case.remote_loads) {
-      if (load.force.norm() > 0.0) {
-        add(load.surface, "force", vector_json(load.force));
-      }
-      if (load.moment.norm() > 0.0) {
-        add(load.surface, "moment", vector_json(load.moment));
+      for (const std::string& on : load.surfaces) {
+        if (load.force.norm() > 0.0) {
+          add(on, "force", vector_json(load.force));
+        }
+        if (load.moment.norm() > 0.0) {
+          add(on, "moment", vector_json(load.moment));
+        }
       }
     }
     for (const loads::SurfacePressure& pressure : load_case.pressures) {
@@ -186,6 +195,13 @@ Json page_loads(const case_data::Case& input,
     }
     for (const loads::Support& support : load_case.supports) {
       add(support.surface, "support", Json());
+    }
+    for (const loads::RigidPin& pin : load_case.pins) {
+      for (const std::string& on : pin.surfaces) {
+        if (pin.holds()) {
+          add(on, "support", Json());
+        }
+      }
     }
     for (const loads::SpringBed& bed : load_case.springs) {
       add(bed.surface, "spring", Json());

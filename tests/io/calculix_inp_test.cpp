@@ -26,6 +26,17 @@ io::CalculixDeck deck() {
   return deck;
 }
 
+io::CalculixDeck on_a_pin() {
+  io::CalculixDeck result = deck();
+  result.pins = {{.nodes = {0, 1, 2}, .point = Vec3(1.0 / 3.0, -2e-9, 3e7)}};
+  result.pins[0].axes << 2.0, -1.0, 2.0, 2.0, 2.0, -1.0, -1.0, 2.0, 2.0;
+  result.pins[0].axes /= 3.0;
+  result.steps[0].pins = {
+      {.fixed = {true, true, true, true, true, true},
+       .value = {1e-7 / 3.0, -1e7 / 3.0, 0.0, 1.0, 2.0, 3.0}}};
+  return result;
+}
+
 io::CalculixDeck on_springs() {
   io::CalculixDeck result = deck();
   result.steps.push_back({"sprung"});
@@ -36,7 +47,8 @@ io::CalculixDeck on_springs() {
 
 // CalculiX reads 20 characters of every number and 132 of a line.
 TEST(CalculixInp, KeepsFieldsAndLinesShort) {
-  std::istringstream lines(io::calculix_deck(brick(), on_springs()));
+  std::istringstream lines(io::calculix_deck(brick(), on_springs()) +
+                           io::calculix_deck(brick(), on_a_pin()));
   for (std::string line; std::getline(lines, line);) {
     if (line.starts_with("*")) {
       continue;

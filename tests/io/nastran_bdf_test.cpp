@@ -102,6 +102,40 @@ TEST_F(NastranBdf, CombinesLoadsOfAStep) {
   EXPECT_THAT(deck, HasSubstr("PLOAD4*               11 "));
 }
 
+// A pin is a grid point with six components along its axes and an RBE2.
+TEST_F(NastranBdf, HoldsRigidPinsAndMovedSurfaces) {
+  deck_.steps[0].supports[0].displacement = Vec3(0.0, 0.0, 0.125);
+  io::DeckPin pin{.nodes = {1, 3, 5}, .point = Vec3(1.0, 1.0, 1.5)};
+  pin.axes.col(0) = Vec3::UnitY();
+  pin.axes.col(1) = Vec3::UnitZ();
+  pin.axes.col(2) = Vec3::UnitX();
+  deck_.pins = {pin};
+  deck_.steps[0].pins = {{.fixed = {true, false, false, false, true, false},
+                          .value = {0.25, 0.0, 0.0, 0.0, -0.5, 0.0}}};
+  const std::string deck = text();
+  const auto point = static_cast<int>(mesh_.nodes.size()) + 1;
+  const auto body = mesh_.element_count() + 1;
+  EXPECT_THAT(deck, HasSubstr(fmt::format("RBE2    {:>8}{:>8}     123       2"
+                                          "       4       6\n",
+                                          body, point)));
+  // z of the system is axis 3, from its origin; x lies towards axis 1.
+  EXPECT_THAT(
+      deck,
+      HasSubstr(fmt::format(
+          "CORD2R* {:>16}{:>16}{:>16}{:>16}\n*       {:>16}{:>16}{:>16}"
+          "{:>16}\n*       {:>16}{:>16}{:>16}\n",
+          1, 0, "1.", "1.", "1.5", "2.", "1.", "1.5", "1.", "2.", "1.5")));
+  EXPECT_THAT(deck, HasSubstr(fmt::format("GRID*   {:>16}{:>16}", point, 0)));
+  EXPECT_THAT(deck, HasSubstr(fmt::format("SPC*    {:>16}{:>16}{:>16}{:>16}\n",
+                                          1, point, 1, "0.25")));
+  EXPECT_THAT(deck, HasSubstr(fmt::format("SPC*    {:>16}{:>16}{:>16}{:>16}\n",
+                                          1, point, 5, "-0.5")));
+  EXPECT_THAT(deck, HasSubstr("SPC1           1       1       "));
+  EXPECT_THAT(deck, HasSubstr(fmt::format("{:>16}{:>16}\n", 3, "0.125")));
+  deck_.steps[0].pins.clear();
+  EXPECT_THROW(text(), InvalidInput);
+}
+
 TEST_F(NastranBdf, RefusesWhatDoesNotFit) {
   deck_.steps[0].supports = {};
   EXPECT_THROW(text(), InvalidInput);

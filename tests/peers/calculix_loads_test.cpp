@@ -237,6 +237,102 @@ TEST(SpringsInCalculix, GiveTheSameDisplacementsInEveryStep) {
   }
 }
 
+/// A pin that is pulled; that is moved and turned; that is held in part, about
+/// oblique axes (with the same frame); and a foot that is moved.
+std::vector<loads::LoadCase> on_pins(const Part& part) {
+  const element::LocalAxes axes{{1.0, 0.4, 0.2}, {-0.3, 1.0, 0.5}};
+  loads::LoadCase pulled{.name = "pulled"};
+  pulled.supports = {{part.foot, true, true, true}};
+  pulled.pins = {{.surfaces = part.head}};
+  pulled.remote_loads = {{.surfaces = part.head,
+                          .point = {4.0, 30.0, 50.0},
+                          .force = {300.0, -200.0, 500.0},
+                          .moment = {1000.0, 2000.0, -500.0}}};
+  pulled.gravity = {2000.0, -3000.0, -9810.0};
+  loads::LoadCase moved = pulled;
+  moved.name = "moved";
+  moved.remote_loads.clear();
+  moved.pins = {{.surfaces = part.head,
+                 .fix = {true, true, true},
+                 .fix_rotation = {true, true, true},
+                 .axes = axes,
+                 .point = {4.0, 30.0, 50.0},
+                 .displacement = Vec3(0.02, -0.03, 0.01),
+                 .rotation = Vec3(1e-3, -5e-4, 2e-3)}};
+  loads::LoadCase hinged = moved;
+  hinged.name = "hinged";
+  hinged.pins[0].fix_rotation = {true, false, true};
+  hinged.pins[0].fix = {true, false, true};
+  hinged.pins[0].displacement = Vec3(0.01, 0.0, 0.02);
+  hinged.pins[0].rotation = Vec3(1e-3, 0.0, 5e-4);
+  hinged.supports[0].displacement = Vec3(0.005, -0.01, 0.02);
+  return {pulled, moved, hinged};
+}
+
+TEST(PinsInCalculix, GiveTheSameDisplacementsInEveryStep) {
+  if (!have_calculix()) {
+    MENISCUS_NOT_HERE("ccx (Debian package calculix-ccx) is not installed");
+  }
+  for (const Part& part : parts()) {
+    for (const int order : {1, 2}) {
+      const TetMesh mesh = part.make(order);
+      const std::vector<loads::LoadCase> cases = on_pins(part);
+      io::CalculixDeck deck =
+          results::calculix_deck_of({aluminium()}, cases, mesh);
+      EXPECT_EQ(deck.pins.size(), 1U);
+      deck.output = io::DeckOutput::Print;
+      const auto theirs = run_calculix(io::calculix_deck(mesh, deck),
+                                       static_cast<int>(mesh.nodes.size()));
+      ASSERT_EQ(theirs.size(), cases.size());
+      for (std::size_t c = 0; c < cases.size(); ++c) {
+        const elastic::ElasticModel model(mesh, {aluminium()}, {cases[c]},
+                                          {.tolerance = 1e-11});
+        ASSERT_FALSE(model.base_solution().failure)
+            << model.base_solution().failure->message;
+        const double apart = relative_difference(
+            model.base_solution().displacements[0], theirs[c].displacement);
+        EXPECT_LE(apart, kDisplacement)
+            << part.name << order << " " << cases[c].name;
+        RecordProperty(part.name + std::to_string(order) + cases[c].name,
+                       fmt::format("{:.1e}", apart));
+      }
+    }
+  }
+}
+
+TEST(EnforcedInCalculix, MovedSurfacesGiveTheSameDisplacementsAndStresses) {
+  if (!have_calculix()) {
+    MENISCUS_NOT_HERE("ccx (Debian package calculix-ccx) is not installed");
+  }
+  for (const Part& part : parts()) {
+    const TetMesh mesh = part.make(2);
+    loads::LoadCase moved{.name = "moved"};
+    moved.supports = {{part.foot, true, true, true},
+                      {.surface = part.head,
+                       .fix_x = true,
+                       .fix_z = true,
+                       .displacement = Vec3(0.05, 0.0, -0.02)}};
+    moved.pressures = {{part.side, 3.0}};
+    if (part.name == "Tube") {  // has a bore
+      moved.bearings = {{.surfaces = "x0", .force = {400.0, 250.0, 30.0}}};
+    }
+    io::CalculixDeck deck =
+        results::calculix_deck_of({aluminium()}, {moved}, mesh);
+    deck.output = io::DeckOutput::Print;
+    const auto theirs = run_calculix(io::calculix_deck(mesh, deck),
+                                     static_cast<int>(mesh.nodes.size()));
+    ASSERT_EQ(theirs.size(), 1U);
+    const elastic::ElasticModel model(mesh, {aluminium()}, {moved},
+                                      {.tolerance = 1e-11});
+    const VectorX& u = model.base_solution().displacements[0];
+    EXPECT_LE(relative_difference(u, theirs[0].displacement), kDisplacement);
+    EXPECT_LE(relative_difference(
+                  element::point_stress(mesh, {aluminium()}, u).stress,
+                  theirs[0].stress),
+              kStress);
+  }
+}
+
 std::vector<Job> jobs() {
   std::vector<Job> all;
   for (int part = 0; part < 3; ++part) {

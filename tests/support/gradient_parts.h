@@ -84,8 +84,14 @@ inline std::vector<loads::LoadCase> load_cases() {
   all.back().gravity = {0.3, -0.2, -9.8};
   all.back().spin = loads::Spin{{0.1, -0.4, 0.2}, {0.2, 0.3, 1.0}, 2.0};
   all.push_back(held("remote"));
-  all.back().remote_loads = {{.surface = "x1",
+  all.back().remote_loads = {{.surfaces = "x1",
                               .point = {3.0, 0.7, -0.4},
+                              .force = {0.5, -1.0, 2.0},
+                              .moment = {0.4, 0.3, -0.6}}};
+  all.push_back(held("together"));
+  all.back().forces = {{{"x1", "z1"}, {1.0, 2.0, -3.0}}};
+  all.back().remote_loads = {{.surfaces = {"y0", "y1"},
+                              .point = {2.0, 0.7, -0.4},
                               .force = {0.5, -1.0, 2.0},
                               .moment = {0.4, 0.3, -0.6}}};
   all.push_back(warm());

@@ -90,7 +90,7 @@ double tip_twist(const TetMesh& mesh, const element::Material& m,
   loads::LoadCase load = tip_force(Vec3::Zero());
   load.forces.clear();
   load.remote_loads = {
-      {.surface = "x1", .point = middle, .moment = Vec3::UnitX()}};
+      {.surfaces = "x1", .point = middle, .moment = Vec3::UnitX()}};
   const elastic::ElasticModel model = model_of(mesh, m, load);
   expect_solved(model.base_solution());
   // Twice the work of a unit moment.

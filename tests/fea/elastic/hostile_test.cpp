@@ -105,7 +105,7 @@ TEST(Hostile, NoSupportNoLoadUnknownSurface) {
   lost.supports = {parts::hold("bottom")};
   expect_refused<InvalidInput>(lost, "bottom", "x0, x1");
   lost = parts::pulled(kForce);
-  lost.forces[0].surface = "";
+  lost.forces[0].surfaces = "";
   expect_refused<InvalidInput>(lost, "no surface ''");
 }
 

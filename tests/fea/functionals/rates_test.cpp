@@ -71,6 +71,26 @@ TEST_P(Rates, OfNumbersOfLoads) {
       rates);
 }
 
+TEST_P(Rates, OfLoadsOfSeveralSurfaces) {
+  loads::LoadCase rates;
+  rates.forces = {{{"x1", "z1"}, {0.3, -1.0, 2.0}}};
+  rates.remote_loads = {
+      {{"y0", "y1"}, {0.3, 0.2, -0.5}, {1.0, -0.2, 0.4}, {0.1, 0.5, 0.2}}};
+  expect_load_rate(
+      [&](double t) {
+        loads::LoadCase at = gradient_parts::held("together");
+        at.forces = {
+            {{"x1", "z1"}, Vec3(1.0, 2.0, 3.0) + t * rates.forces[0].total}};
+        const loads::RemoteLoad& r = rates.remote_loads[0];
+        at.remote_loads = {{{"y0", "y1"},
+                            Vec3(3.0, 1.0, 0.5) + t * r.point,
+                            Vec3(0.2, 0.7, -0.4) + t * r.force,
+                            Vec3(0.5, 0.1, 0.6) + t * r.moment}};
+        return at;
+      },
+      rates);
+}
+
 TEST_P(Rates, OfFields) {
   loads::LoadCase rates;
   rates.pressures = {

@@ -230,6 +230,55 @@ TEST(DesignGradient, IsExactUnderEveryKindOfLoad) {
   expect_exact(text, VectorX::Zero(3));
 }
 
+TEST(DesignGradient, IsExactUnderLoadsOfSeveralSurfaces) {
+  expect_exact(
+      changed(every_response(),
+              "[{ on = \"head_pad\", force = [\"load\", 0, 0] }]",
+              "[{ on = [\"head_pad\", \"skin\"], force = [\"load\", \"30 * "
+              "lean\", 0], at = [\"lean\", 5, 80], moment = [0, 1e4, 0] },\n"
+              "  { on = [\"head_pad\", \"skin\"], force = [0, \"load * fill\", "
+              "0] }]"),
+      Vec3(1.5, -4.0, 0.07));
+}
+
+TEST(DesignGradient, IsExactUnderRigidPins) {
+  std::string text = changed(
+      every_response(), "[{ on = \"head_pad\", force = [\"load\", 0, 0] }]",
+      "[{ on = \"head_pad\", by = \"rigid\", force = [\"load\", \"30 * lean\", "
+      "0], at = [\"lean\", 5, 80], moment = [0, 1e4, \"1e3 * fill\"] },\n"
+      "  { gravity = [0, \"1e5 * lean\", -9.8e6] }]");
+  text =
+      changed(text, "[{ on = \"foot_pad\", fix = \"xyz\" }]",
+              "[{ on = \"foot_pad\", by = \"rigid\", at = [\"lean\", 0, "
+              "\"-foot\"], fix = \"xyz\", fix_rotation = \"xyz\", rotation = "
+              "[\"lean / 1e4\", \"2e-4 * fill\", 0], displacement = [0, "
+              "\"lean / 100\", 0] }]");
+  expect_exact(text, Vec3(1.5, -4.0, 0.07));
+}
+
+TEST(DesignGradient, IsExactUnderBearingForces) {
+  const std::string text = changed(
+      every_response(), "[{ on = \"head_pad\", force = [\"load\", 0, 0] }]",
+      "[{ on = \"skin\", by = \"bearing\", force = [\"load\", \"30 * lean\", "
+      "\"-10 * lean\"] },\n"
+      "  { on = \"skin\", by = \"bearing\", force = [\"-load * fill\", 0, "
+      "0], at = [\"lean / 2\", 0, \"28 + lean\"], axis = [\"lean / 100\", 0, "
+      "1] }]");
+  expect_exact(text, VectorX::Zero(3));
+}
+
+TEST(DesignGradient, IsExactUnderEnforcedDisplacements) {
+  const std::string text =
+      changed(every_response(), "[{ on = \"foot_pad\", fix = \"xyz\" }]",
+              "[{ on = \"foot_pad\", fix = \"xyz\", displacement = "
+              "[\"lean / 300\", \"fill / 100\", 0], axes = [[1, 0.2, 0], [0, "
+              "1, 0.3]] },\n"
+              "  { on = \"head_pad\", fix = \"z\", displacement = [0, 0, "
+              "\"(lean - 3) / 50\"] }]");
+  expect_exact(text, VectorX::Zero(3));  // where one is 0, but moves
+  expect_exact(text, Vec3(1.5, -4.0, 0.07));
+}
+
 TEST(DesignGradient, IsExactWhereMaterialsFollowTheDesign) {
   std::string text = changed(
       every_response(), "[{ on = \"head_pad\", force = [\"load\", 0, 0] }]",

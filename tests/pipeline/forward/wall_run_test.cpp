@@ -155,7 +155,7 @@ TEST(WallRuns, NameTheirSidesByInsideAndOutside) {
                         "on = \"" + name + "\", pressure"))
         .load_cases[0]
         .loads[0]
-        .surface;
+        .surfaces.text();
   };
   EXPECT_EQ(surface_of("skin/inside"), "skin/back");
   EXPECT_EQ(surface_of("skin/outside"), "skin");

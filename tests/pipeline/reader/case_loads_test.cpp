@@ -83,6 +83,88 @@ TEST(CaseLoads, EveryKindOfLoadIsRead) {
   EXPECT_EQ(load_case.temperature->reference, 20.0);
 }
 
+TEST(CaseLoads, SeveralSurfacesInOneEntry) {
+  std::string text = with_supports(
+      "[{ on = [\"foot_pad\", \"skin\"], fix = \"xy\" },\n"
+      "  { on = [\"foot_pad\", \"skin\"], normal_stiffness = 2 }]");
+  text = changed(text, kLoads,
+                 "[{ on = [\"head_pad\", \"skin\"], force = [1, 2, 3] },\n"
+                 "  { on = [\"head_pad\", \"skin\"], moment = [0, 0, 5], at = "
+                 "[0, 0, 90] },\n"
+                 "  { on = [\"head_pad\", \"skin\"], pressure = 3 },\n"
+                 "  { on = [\"head_pad\"], traction = [0, 0, \"x\"] }]");
+  const loads::LoadCase load_case = numbers_of(text).load_cases.at(0);
+  const loads::Surfaces both = {"head_pad", "skin"};
+  ASSERT_EQ(load_case.forces.size(), 1U);
+  EXPECT_EQ(load_case.forces[0].surfaces, both);
+  ASSERT_EQ(load_case.remote_loads.size(), 1U);
+  EXPECT_EQ(load_case.remote_loads[0].surfaces, both);
+  ASSERT_EQ(load_case.pressures.size(), 2U);
+  EXPECT_EQ(load_case.pressures[1].surface, "skin");
+  EXPECT_EQ(load_case.pressures[1].pressure, 3.0);
+  ASSERT_EQ(load_case.tractions.size(), 1U);
+  ASSERT_EQ(load_case.supports.size(), 2U);
+  EXPECT_EQ(load_case.supports[1].surface, "skin");
+  EXPECT_TRUE(load_case.supports[1].fix_y);
+  ASSERT_EQ(load_case.springs.size(), 2U);
+  EXPECT_EQ(load_case.springs[1].normal, 2.0);
+}
+
+TEST(CaseLoads, RigidPinsAndEnforcedDisplacements) {
+  std::string text = with_supports(
+      "[{ on = \"skin\", fix = \"xz\", displacement = [\"foot / 50\", 0, "
+      "\"1 cm\"] },\n"
+      "  { on = [\"foot_pad\"], by = \"rigid\", fix = \"xyz\", fix_rotation = "
+      "\"xz\", at = [0, 0, \"-foot\"], rotation = [\"load / 1e6\", 0, 0] }]");
+  text =
+      changed(text, kLoads,
+              "[{ on = \"head_pad\", by = \"rigid\", force = [1, 2, 3], at = "
+              "[0, 0, 90] },\n"
+              "  { on = \"head_pad\", by = \"rigid\", moment = [4, 0, 0] },\n"
+              "  { on = \"foot_pad\", by = \"rigid\", force = [0, 5, 0] }]");
+  const loads::LoadCase load_case = numbers_of(text).load_cases.at(0);
+  ASSERT_EQ(load_case.supports.size(), 1U);
+  EXPECT_EQ(load_case.supports[0].displacement, Vec3(0.5, 0, 10));
+  ASSERT_EQ(load_case.pins.size(), 2U);  // loads join what they have in common
+  const loads::RigidPin& foot = load_case.pins[0];
+  EXPECT_EQ(foot.surfaces, loads::Surfaces("foot_pad"));
+  EXPECT_EQ(foot.fix, (std::array<bool, 3>{true, true, true}));
+  EXPECT_EQ(foot.fix_rotation, (std::array<bool, 3>{true, false, true}));
+  EXPECT_EQ(foot.point, Vec3(0, 0, -25));
+  EXPECT_EQ(foot.rotation, Vec3(1e-3, 0, 0));
+  EXPECT_FALSE(foot.displacement);
+  EXPECT_FALSE(load_case.pins[1].holds());
+  EXPECT_EQ(load_case.remote_loads.size(), 2U);
+  EXPECT_EQ(load_case.forces.size(), 1U);
+}
+
+TEST(CaseLoads, BearingForces) {
+  const loads::LoadCase load_case =
+      numbers_of(
+          with_loads("[{ on = [\"skin\", \"head_pad\"], by = "
+                     "\"bearing\", force = [\"load\", 0, 0] },\n"
+                     "  { on = \"skin\", by = \"bearing\", force = [0, "
+                     "3, 0], at = [0, 0, \"foot\"], axis = [0, 0, 2] }]"))
+          .load_cases.at(0);
+  ASSERT_EQ(load_case.bearings.size(), 2U);
+  EXPECT_EQ(load_case.bearings[0].surfaces.size(), 2U);
+  EXPECT_EQ(load_case.bearings[0].force, Vec3(1000, 0, 0));
+  EXPECT_FALSE(load_case.bearings[0].point);
+  EXPECT_FALSE(load_case.bearings[0].axis);
+  EXPECT_EQ(load_case.bearings[1].point, Vec3(0, 0, 25));
+  EXPECT_EQ(load_case.bearings[1].axis, Vec3(0, 0, 2));
+  EXPECT_TRUE(load_case.forces.empty());
+  EXPECT_TRUE(load_case.pins.empty());
+}
+
+TEST(CaseLoads, ADisplacementIsALoad) {
+  const std::string moved = changed(
+      with_supports("[{ on = \"foot_pad\", fix = \"xyz\" }, { on = "
+                    "\"head_pad\", fix = \"z\", displacement = [0, 0, 0.1] }]"),
+      std::string("loads = ") + kLoads, "");
+  EXPECT_TRUE(numbers_of(moved).load_cases.at(0).forces.empty());
+}
+
 TEST(CaseLoads, MaterialsAreIsotropicOrOrthotropic) {
   EXPECT_EQ(numbers_of(changed(strut(), "density = 2.8e-9",
                                "density = 2.8e-9\nthermal_expansion = 2e-5"))
@@ -141,6 +223,69 @@ INSTANTIATE_TEST_SUITE_P(
                            "3 }]"),
                 "52: load_cases.service.loads on 'head_pad' has force and "
                 "pressure; expected one of"},
+        Mistake{"TotalSpringsOnSeveral",
+                with_supports("[{ on = [\"foot_pad\", \"skin\"], "
+                              "normal_stiffness = 1, stiffness_of = \"total\" "
+                              "}]"),
+                "stiffness_of is total on several surfaces"},
+        Mistake{"SurfaceTwice",
+                with_loads("[{ on = [\"skin\", \"skin\"], pressure = 3 }]"),
+                "52: load_cases.service.loads.on has 'skin' twice"},
+        Mistake{"OneOfSeveralUnknown",
+                with_loads("[{ on = [\"skin\", \"skim\"], pressure = 3 }]"),
+                "did you mean 'skin'?"},
+        Mistake{"SurfaceIsANumber", with_loads("[{ on = 3, pressure = 3 }]"),
+                "expected a name, or a list of names"},
+        Mistake{"PinByNodesToo",
+                with_loads("[{ on = [\"foot_pad\", \"head_pad\"], by = "
+                           "\"rigid\", force = [1, 0, 0] }]"),
+                "51: surface 'foot_pad' is of a rigid pin of load case "
+                "'service' and held by nodes"},
+        Mistake{"TwoPins",
+                with_loads("[{ on = [\"skin\", \"head_pad\"], by = \"rigid\", "
+                           "force = [1, 0, 0] }, { on = \"skin\", by = "
+                           "\"rigid\", force = [1, 0, 0] }]"),
+                "surface 'skin' is of two rigid pins of load case 'service'"},
+        Mistake{"RigidSupportNowhere",
+                with_supports("[{ on = \"foot_pad\", by = \"rigid\", fix = "
+                              "\"xyz\" }]"),
+                "is rigid and has no 'at'"},
+        Mistake{"RotationOfNodes",
+                with_supports("[{ on = \"foot_pad\", fix = \"xyz\", "
+                              "fix_rotation = \"x\" }]"),
+                "fix_rotation does not belong to a support by nodes"},
+        Mistake{"DisplacementAlongNormals",
+                with_supports("[{ on = \"foot_pad\", fix = \"normal\", "
+                              "displacement = [1, 0, 0] }]"),
+                "displacement does not belong to fix = \"normal\""},
+        Mistake{"DisplacementOfSprings",
+                with_supports("[{ on = \"foot_pad\", normal_stiffness = 1, "
+                              "displacement = [1, 0, 0] }]"),
+                "displacement does not belong to springs"},
+        Mistake{"DisplacementOfWhatIsFree",
+                with_supports("[{ on = \"foot_pad\", fix = \"xy\", "
+                              "displacement = [0, 0, 0.2] }]"),
+                "must be 0 where fix does not hold that component"},
+        Mistake{"ByWhat",
+                with_loads("[{ on = \"head_pad\", by = \"rigit\", force = "
+                           "[1, 0, 0] }]"),
+                "did you mean 'rigid'?"},
+        Mistake{"MomentOfABearing",
+                with_loads("[{ on = \"skin\", by = \"bearing\", moment = [1, "
+                           "0, 0], at = [0, 0, 0] }]"),
+                "by is bearing: a pin that presses carries a force"},
+        Mistake{"ForceAndMomentOfABearing",
+                with_loads("[{ on = \"skin\", by = \"bearing\", force = [1, 0, "
+                           "0], moment = [1, 0, 0], at = [0, 0, 0] }]"),
+                "moment does not belong to a force that is bearing"},
+        Mistake{"AxisOfASpreadForce",
+                with_loads("[{ on = \"skin\", force = [1, 0, 0], axis = [1, 0, "
+                           "0] }]"),
+                "axis does not belong to a force that is spread"},
+        Mistake{"PressureByAPin",
+                with_loads("[{ on = \"head_pad\", by = \"rigid\", pressure = "
+                           "3 }]"),
+                "by does not belong to a pressure"},
         Mistake{"PressureNowhere", with_loads("[{ pressure = 3 }]"),
                 "is a pressure and has no 'on'"},
         Mistake{"GravityOnASurface",

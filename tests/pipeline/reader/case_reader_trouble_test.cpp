@@ -246,7 +246,7 @@ const Trouble kMistakes[] = {
     {"FixedWhere", "fix = \"xyz\"", "fix = \"xyw\"",
      "51: load_cases.service.supports.fix is 'xyw'; expected some of"},
     {"NoLoad", "loads = [{ on = \"head_pad\", force = [\"load\", 0, 0] }]\n",
-     "", "50: load_cases.service has no 'loads' (at least one); add it"},
+     "", "50: load case 'service' has no load that is not 0"},
     {"ZeroLoad", "force = [\"load\", 0, 0]", "force = [0, \"load - load\", 0]",
      "50: load case 'service' has no load that is not 0"},
     {"LoadWithoutForce", ", force = [\"load\", 0, 0]", "",

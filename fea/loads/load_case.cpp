@@ -1,0 +1,24 @@
+#include "fea/loads/load_case.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace meniscus::loads {
+
+std::string Surfaces::text() const {
+  return fmt::format("{}", fmt::join(*this, " and "));
+}
+
+bool enforces(const LoadCase& load_case) {
+  return std::any_of(
+             load_case.supports.begin(), load_case.supports.end(),
+             [](const Support& s) { return s.displacement.has_value(); }) ||
+         std::any_of(load_case.pins.begin(), load_case.pins.end(),
+                     [](const RigidPin& pin) {
+                       return pin.displacement || pin.rotation;
+                     });
+}
+
+}  // namespace meniscus::loads
