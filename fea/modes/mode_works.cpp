@@ -284,6 +284,7 @@ VectorX vibration_reactions(const TetMesh& mesh,
       });
   if (square != 0.0) {
     std::vector<double> density;
+    density.reserve(materials.size());
     for (const element::Material& material : materials) {
       density.push_back(material.density);
     }
