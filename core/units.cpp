@@ -28,7 +28,7 @@ struct DimensionRow {
   const char* name;
   UnitPowers powers;
 };
-constexpr std::array<DimensionRow, 16> kDimensions = {{
+constexpr std::array<DimensionRow, 17> kDimensions = {{
     {Dimension::None, "number", {}},
     {Dimension::Length, "length", {.length = 1}},
     {Dimension::Angle, "angle", {}},
