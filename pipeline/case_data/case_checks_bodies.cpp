@@ -151,6 +151,59 @@ void check_caps(const Case& input, CaseProblems& problems) {
   }
 }
 
+/// One film, of one tension, ends on all curves of a wetted face, which hold
+/// nothing else.
+void check_wetted(const Case& input, CaseProblems& problems) {
+  for (const CapEntry& cap : input.caps) {
+    if (!cap.wetted) {
+      continue;
+    }
+    for (const std::string& curve : cap.spec.curves()) {
+      std::vector<std::string> films;
+      std::vector<std::string> solids;
+      for (const FilmEntry& film : input.films) {
+        if (is_among(film.spec.curves, curve)) {
+          films.push_back(film.spec.name);
+          if (film.tension.of_place) {
+            problems.add(
+                cap.line,
+                fmt::format("film '{}' slides on the wall of '{}', and "
+                            "its tension depends on the place; give "
+                            "it a number",
+                            film.spec.name, cap.spec.name));
+          }
+          if (!is_among(film.spec.curves, cap.spec.curve)) {
+            problems.add(cap.line,
+                         fmt::format("film '{}' ends at curve '{}' of '{}' and "
+                                     "not at '{}'; a wetted face is of one "
+                                     "film: make another for this one",
+                                     film.spec.name, curve, cap.spec.name,
+                                     cap.spec.curve));
+          }
+        }
+      }
+      for (const CapEntry& other : input.caps) {
+        if (is_among(other.spec.curves(), curve) && &other != &cap) {
+          solids.push_back(other.spec.name);
+        }
+      }
+      if (films.size() != 1 || !solids.empty()) {
+        problems.add(
+            cap.line,
+            fmt::format(
+                "solid '{}' is wetted at curve '{}', where {} end; "
+                "expected one film there and no other solid",
+                cap.spec.name, curve,
+                films.empty() && solids.empty()
+                    ? "no films"
+                    : fmt::format("{}", fmt::join(films, ", ")) +
+                          (films.empty() || solids.empty() ? "" : ", ") +
+                          fmt::format("{}", fmt::join(solids, ", "))));
+      }
+    }
+  }
+}
+
 /// All names that the body's shape hangs on are known; else the reader has
 /// told so, and what follows from it is no news.
 bool names_are_known(const Case& input, const BodyEntry& body) {
@@ -201,6 +254,7 @@ void check_closed(const Case& input, const BodyEntry& body,
 
 void check_bodies(const Case& input, CaseProblems& problems) {
   check_caps(input, problems);
+  check_wetted(input, problems);
   std::map<std::string, std::vector<std::string>> bodies_of;
   for (const BodyEntry& body : input.bodies) {
     check_closed(input, body, problems);

@@ -12,6 +12,7 @@
 #include "core/error.h"
 #include "evolve/frozen/film_model.h"
 #include "pipeline/results/rim_pieces.h"
+#include "pipeline/results/slid_rims.h"
 
 namespace meniscus::results {
 
@@ -204,11 +205,12 @@ void export_step(const std::filesystem::path& file,
     step::write_step(file, solid::faceted_solid(mesh), names);
     return;
   }
-  model = settled(for_smooth_films(system, mesh), options.edge);
+  const films::FilmSystem held = held_where_it_slid(system, model);
+  model = settled(for_smooth_films(held, mesh), options.edge);
   mesh = model.boundary(model.reference().points);
-  solid::FilmSolidInput input{mesh, rims_of(system, model), {}, options.edge};
-  for (const films::CapSpec& cap : system.caps) {
-    if (is_flat(cap, system, mesh)) {
+  solid::FilmSolidInput input{mesh, rims_of(held, model), {}, options.edge};
+  for (const films::CapSpec& cap : held.caps) {
+    if (is_flat(cap, held, mesh)) {
       input.caps.push_back(cap.name);
     }
     if (!cap.inner.empty() || cap.start || cap.ruled) {

@@ -1,0 +1,96 @@
+#include "pipeline/case_data/case_wetted.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+namespace meniscus::case_data {
+
+namespace {
+
+constexpr int kPlacesOnRim = 16;
+constexpr double kOnWall = 1e-9;  // of the curve's size
+
+/// The film that ends on a wall; null where none does.
+const FilmEntry* film_at(const Case& input, const std::string& curve) {
+  const auto found = std::find_if(
+      input.films.begin(), input.films.end(), [&](const FilmEntry& film) {
+        return std::find(film.spec.curves.begin(), film.spec.curves.end(),
+                         curve) != film.spec.curves.end();
+      });
+  return found == input.films.end() ? nullptr : &*found;
+}
+
+Points places_on(const curves::Curve& curve) {
+  Points result;
+  for (int k = 0; k < kPlacesOnRim; ++k) {
+    result.push_back(
+        curves::point_at(curve.shape, static_cast<double>(k) / kPlacesOnRim));
+  }
+  return result;
+}
+
+void check_on_wall(const Case& input, const CapEntry& cap,
+                   const films::PlaneWall& wall, const curves::Curve& curve,
+                   const CaseValues& values) {
+  const Vec3 n = wall.normal.normalized();
+  const Points places = places_on(curve);
+  const auto off = [&](const Vec3& p) { return std::abs(n.dot(p - wall.at)); };
+  const auto worst = std::max_element(
+      places.begin(), places.end(),
+      [&](const Vec3& a, const Vec3& b) { return off(a) < off(b); });
+  if (!(off(*worst) <= kOnWall * bounding_diagonal(places))) {
+    values.problems().push_back(fmt::format(
+        "{}: curve '{}' is {:.4g} off the wall of '{}' at ({:.4g}, {:.4g}, "
+        "{:.4g}); expected one in its plane, where the film begins",
+        place(input, cap.line), curve.name, off(*worst), cap.spec.name,
+        worst->x(), worst->y(), worst->z()));
+  }
+}
+
+}  // namespace
+
+films::PlaneWall wall_of(const Case& input, const CapEntry& cap,
+                         const CaseValues& values) {
+  const WettedWall& wetted = *cap.wetted;
+  films::PlaneWall wall{.at = values.at(wetted.at),
+                        .normal = values.at(wetted.normal)};
+  if (!values.are_rates() && !(wall.normal.norm() > 0.0)) {
+    values.problems().push_back(fmt::format(
+        "{}: solids.{}.normal is 0; expected a direction across the wall",
+        place(input, wetted.normal[0].line), cap.spec.name));
+  }
+  values.at(
+      wetted.contact_angle,
+      [](double a) { return a > 0.0 && a < std::numbers::pi; },
+      "above 0 and below 180 deg");
+  const FilmEntry* film = film_at(input, cap.spec.curve);
+  if (film == nullptr || film->tension.of_place) {
+    return wall;  // check_bodies() has told so
+  }
+  const Dual1 tension = values.dual(film->tension.quantity);
+  const Dual1 energy = -(tension * cos(values.dual(wetted.contact_angle)));
+  wall.tension = !values.are_rates()    ? energy.value
+                 : energy.is_constant() ? 0.0
+                                        : energy.gradient[0];
+  return wall;
+}
+
+void check_on_walls(const Case& input, const films::FilmSystem& system,
+                    const CaseValues& values) {
+  for (std::size_t k = 0; k < input.caps.size(); ++k) {
+    const films::CapSpec& spec = system.caps[k];
+    for (const std::string& name : spec.curves()) {
+      const auto curve =
+          std::find_if(system.curves.begin(), system.curves.end(),
+                       [&](const curves::Curve& c) { return c.name == name; });
+      if (spec.wall && curve != system.curves.end()) {
+        check_on_wall(input, input.caps[k], *spec.wall, *curve, values);
+      }
+    }
+  }
+}
+
+}  // namespace meniscus::case_data
