@@ -210,7 +210,29 @@ TEST(FilmGradient, OfAFilmThatSlidesOnAPlane) {
     const frozen::FilmModel model = frozen::FilmModel::freeze(
         sliding(0), {.edge = 0.3, .refinements = refinements});
     expect_exact(model, sliding, 0.2, 1e-2);
+    expect_exact(
+        model, sliding, 0.2, 1e-2,
+        [&](const settle::FilmState& film, const films::FilmSystem& system) {
+          return model.margin(film, system);
+        });
   }
+}
+
+// The other way through the same system.
+TEST(FilmGradient, ForwardsOfAFilmThatSlidesIsItsTranspose) {
+  const frozen::FilmModel model =
+      frozen::FilmModel::freeze(sliding(0), {.edge = 0.3, .refinements = 1});
+  const films::FilmSystem system = sliding(0.2);
+  const settle::FilmState film = model.settle(system);
+  ASSERT_FALSE(film.failure);
+  const films::FilmSystem rates = rates_of(sliding);
+  frozen::FilmCovector by;
+  by.points = covector(model).points;
+  const double backwards =
+      model.rate(model.transpose(film, system, {by}).front(), system, rates);
+  const double forwards =
+      flat(by.points).dot(flat(model.tangents(film, system, {rates}).front()));
+  EXPECT_NEAR(forwards / backwards, 1.0, 1e-11);
 }
 
 films::FilmSystem blown(double p) {
