@@ -64,7 +64,9 @@ films::PlaneWall wall_of(const Case& input, const CapEntry& cap,
   }
   values.at(
       wetted.contact_angle,
-      [](double a) { return a > 0.0 && a < std::numbers::pi; },
+      [](double a) {
+        return a > 0.0 && a < std::numbers::pi && std::abs(std::cos(a)) < 1.0;
+      },
       "above 0 and below 180 deg");
   const FilmEntry* film = film_at(input, cap.spec.curve);
   if (film == nullptr || film->tension.of_place) {

@@ -67,7 +67,7 @@ TEST(CaseWetted, MistakesAreToldWithTheirLines) {
       changed(good, "at = [0, 0, 0]", "at = [0, 0, 0.5]"),
       "case.toml:28: curve 'base' is 0.5 off the wall of 'foot_pad'");
   expect_problem(changed(good, "at = [0, 0, 0]", "at = [0, 0, \"foot - 25\"]"),
-                 "case.toml:31: solids.foot_pad.at[2] depends on 'foot'");
+                 "case.toml:31: solids.foot_pad.at[z] depends on 'foot'");
   expect_problem(
       changed(good, "curves = [\"base\", \"head\"]",
               "curves = [\"base\", \"head\"]\ntension = \"2 + x / 100\""),
