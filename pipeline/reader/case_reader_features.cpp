@@ -1,5 +1,4 @@
 /// Solids that films grow from: bosses, flanges, lugs and blocks.
-#include "pipeline/reader/case_reader_features.h"
 
 #include <algorithm>
 
@@ -7,6 +6,7 @@
 
 #include "pipeline/case_data/case_checks.h"
 #include "pipeline/case_data/feature_shapes.h"
+#include "pipeline/reader/case_reader_tables.h"
 
 namespace meniscus::reader {
 
