@@ -7,8 +7,8 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
-#include "pipeline/files/content_hash.h"
 #include "pipeline/case_data/scan_path.h"
+#include "pipeline/files/content_hash.h"
 #include "pipeline/files/part_file.h"
 
 namespace meniscus::forward {
