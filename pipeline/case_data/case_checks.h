@@ -30,6 +30,10 @@ void check_case(const Case& input, CaseProblems& problems);
 void check_start(const Case& input, const EvaluatedCase& inputs,
                  CaseProblems& problems);
 
+/// The line of the film, solid or body that a message of the start names
+/// first; 0: none.
+SourceLine line_of_start(const Case& input, const std::string& message);
+
 /// Some film or solid, or one of those that enclose a body, is of facets.
 bool has_facets(const Case& input);
 bool has_facets(const Case& input, const BodyEntry& body);
