@@ -248,14 +248,15 @@ void FilmModel::Impl::find_reference(const films::FilmSystem& initial,
     settle_reference(*options.start, options.edge, 0, initial, options, settle);
     return;
   }
-  const int halvings = start::start_halvings(initial, options.edge);
+  const int halvings =
+      options.at_rest ? 0 : start::start_halvings(initial, options.edge);
   find_reference_from(std::ldexp(options.edge, halvings), halvings, initial,
                       options, settle);
   const auto tears = [this] {
     return reference.failure &&
            reference.failure->kind != FailureKind::FilmUnstable;
   };
-  if (!tears() || initial.keep_facets) {
+  if (!tears() || initial.keep_facets || options.at_rest) {
     return;
   }
   // Coarse facets may fold where rims are not much larger than they, and any
@@ -317,38 +318,44 @@ void FilmModel::Impl::settle_reference(const films::FilmComplex& first,
     find.edge.reset();
     find.refinements = halvings;
   }
-  reference = settle::find_equilibrium(complex, find);
+  if (options.at_rest) {
+    settle_level(settle);
+  } else {
+    reference = settle::find_equilibrium(complex, find);
+  }
   if (wets && !reference.failure) {
     start::close_wetted_faces(complex, options.edge);
     reference.points = complex.mesh.points;
+    energy.reset();
   }
   meshed = complex.mesh;
   meshed_complex = complex;
   refine_and_settle(options.refinements, !initial.keep_facets, settle);
 }
 
+void FilmModel::Impl::settle_level(const settle::SettleOptions& settle) {
+  energy.emplace(complex);
+  reference =
+      settle::settle_past_saddles(*energy, complex, energy::targets_of(complex),
+                                  complex.mesh.points, settle);
+  complex.mesh.points = reference.points;
+}
+
 void FilmModel::Impl::refine_and_settle(int levels, bool may_groom,
                                         const settle::SettleOptions& settle) {
   Monitor& monitor =
       settle.monitor != nullptr ? *settle.monitor : silent_monitor();
-  const auto settle_level = [&] {
-    energy.emplace(complex);
-    reference = settle::settle_past_saddles(*energy, complex,
-                                            energy::targets_of(complex),
-                                            complex.mesh.points, settle);
-    complex.mesh.points = reference.points;
-  };
   for (int level = 0; level < levels; ++level) {
     monitor.progress({"film", fmt::format("refinement {}", level + 1), 0.6});
     refine_once(level);
     if (reference.failure) {
       continue;
     }
-    settle_level();
+    settle_level(settle);
     // Where the coarser film was far from this one, new vertices came to it
     // aslant: slivers, whose modes are wrong at any length of edge.
     if (may_groom && !reference.failure && groom::spread_slivers(complex)) {
-      settle_level();
+      settle_level(settle);
     }
   }
 }

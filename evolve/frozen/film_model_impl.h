@@ -58,6 +58,8 @@ struct FilmModel::Impl {
                         int halvings, const films::FilmSystem& initial,
                         const FilmModelOptions& options,
                         const settle::SettleOptions& settle);
+  /// The complex as it is, along its normals.
+  void settle_level(const settle::SettleOptions& settle);
   /// Nested refinements of the settled complex, settled one by one.
   /// `may_groom`: their vertices may be spread anew where facets are slivers.
   void refine_and_settle(int levels, bool may_groom,

@@ -1,6 +1,10 @@
 // Films that slide on plane walls at a contact angle.
+#include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
+#include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -130,6 +134,120 @@ TEST(SlidingFilm, HalfATubeHasTheWholesPressureAndArea) {
   constexpr double kMeshes = 2e-3;  // two meshes of the same edge
   EXPECT_NEAR(pressure[1] / pressure[0], 1.0, kMeshes);
   EXPECT_NEAR(area[1] / area[0], 1.0, kMeshes);
+}
+
+/// A ring and its mirror image about z = 0: of ellipses both begin on their
+/// axis, however they tilt, and their points are each other's images.
+curves::Ellipse ring(double p, double side) {
+  curves::Ellipse result;
+  result.center = Vec3(0.1 * p, 0.0, side * (0.6 + 0.05 * p));
+  result.normal = Vec3(0.2 * p, 0.0, side);
+  result.radius_1 = 1.0;
+  result.radius_2 = 1.0 - 0.1 * p;
+  return result;
+}
+
+/// A tube from given facets, a ring of which moves with p; of the whole both,
+/// as mirror images.
+films::FilmSystem tube_of(std::shared_ptr<const films::StartFacets> start,
+                          bool half, double p) {
+  films::FilmSystem system = tube(half);
+  system.keep_facets = true;
+  system.films[0].kind = films::FilmKind::Facets;
+  system.films[0].start = std::move(start);
+  system.films[0].within = 0.01;
+  system.curves[0].shape = ring(p, 1.0);
+  if (!half) {
+    system.curves[1].shape = ring(p, -1.0);
+  }
+  *system.bodies[0].volume *= 1.0 + 0.1 * p;
+  return system;
+}
+
+/// Rows of facets on a cylinder of radius 1 from z = 0.6 down to 0.
+std::shared_ptr<films::StartFacets> rows_of_facets() {
+  constexpr int kAround = 20;
+  constexpr int kRows = 3;
+  auto start = std::make_shared<films::StartFacets>();
+  for (int row = kRows; row >= 0; --row) {
+    for (int k = 0; k < kAround; ++k) {
+      const double angle = 2.0 * kPi * k / kAround;
+      start->points.emplace_back(std::cos(angle), std::sin(angle),
+                                 0.6 * row / kRows);
+    }
+  }
+  for (int a = 0; a < kRows * kAround; ++a) {
+    const int b = (a + 1) % kAround == 0 ? a + 1 - kAround : a + 1;
+    start->facets.push_back({a, a + kAround, b});
+    start->facets.push_back({b, a + kAround, b + kAround});
+  }
+  return start;
+}
+
+/// The film of a half at rest, with its mirror image.
+std::shared_ptr<films::StartFacets> mirrored(const SurfaceMesh& half) {
+  auto start = std::make_shared<films::StartFacets>();
+  std::vector<int> upper(half.points.size(), -1);
+  std::vector<int> lower(half.points.size(), -1);
+  for (std::size_t f = 0; f < half.facets.size(); ++f) {
+    if (half.labels[half.facet_label[f]] != "skin") {
+      continue;
+    }
+    for (const int v : half.facets[f]) {
+      if (upper[v] >= 0) {
+        continue;
+      }
+      const Vec3& at = half.points[v];
+      upper[v] = lower[v] = static_cast<int>(start->points.size());
+      start->points.push_back(at);
+      if (at.z() > kFlat) {
+        lower[v] = static_cast<int>(start->points.size());
+        start->points.emplace_back(at.x(), at.y(), -at.z());
+      }
+    }
+    const auto [a, b, c] = half.facets[f];
+    start->facets.push_back({upper[a], upper[b], upper[c]});
+    start->facets.push_back({lower[a], lower[c], lower[b]});
+  }
+  return start;
+}
+
+// Mirrored meshes, at the frozen design and at others: what slides on the plane
+// and what the whole has there are the same film.
+TEST(SlidingFilm, HalfAFilmIsTheWholesToRounding) {
+  constexpr double kRounding = 1e-9;
+  frozen::FilmModelOptions options = {.edge = 0.29, .refinements = 0};
+  const auto rows = rows_of_facets();
+  const frozen::FilmModel part =
+      frozen::FilmModel::freeze(tube_of(rows, true, 0.0), options);
+  ASSERT_FALSE(part.reference().failure);
+  const auto both = mirrored(part.fine_mesh(part.reference().points));
+  options.at_rest = true;
+  const frozen::FilmModel whole =
+      frozen::FilmModel::freeze(tube_of(both, false, 0.0), options);
+  for (const double p : {0.0, 0.7}) {
+    const settle::FilmState all = whole.settle(tube_of(both, false, p));
+    const settle::FilmState half = part.settle(tube_of(rows, true, p));
+    ASSERT_FALSE(all.failure) << all.failure->message;
+    ASSERT_FALSE(half.failure) << half.failure->message;
+    EXPECT_NEAR(half.report.bodies[0].pressure, all.report.bodies[0].pressure,
+                kRounding);
+    EXPECT_NEAR(2.0 * half.report.area, all.report.area, kRounding);
+    const SurfaceMesh mesh = part.fine_mesh(half.points);
+    double farthest = 0.0;
+    for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+      for (const int v : mesh.facets[f]) {
+        if (mesh.labels[mesh.facet_label[f]] == "skin") {
+          double nearest = 1.0;
+          for (const Vec3& point : all.points) {
+            nearest = std::min(nearest, (point - mesh.points[v]).norm());
+          }
+          farthest = std::max(farthest, nearest);
+        }
+      }
+    }
+    EXPECT_LT(farthest, kRounding) << p;
+  }
 }
 
 std::string message_of(const films::FilmSystem& system) {
