@@ -1,8 +1,6 @@
 /// Films of a case as they start.
 #pragma once
 
-#include <string>
-
 #include "evolve/frozen/film_model.h"
 #include "pipeline/case_data/case.h"
 

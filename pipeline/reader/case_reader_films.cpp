@@ -94,8 +94,7 @@ const std::vector<SolidRow>& solid_kinds() {
        {"wetted",
         {{"curve", "at", "normal"}, {"holes", "contact_angle"}},
         "the face that a body wets on a plane wall: the film that begins at "
-        "its "
-        "curve ends there and slides"},
+        "its curve ends there and slides"},
        {"sides",
         {{"curves"}, {}},
         "the plane faces between the sides of two polygons"},
