@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
@@ -100,22 +101,21 @@ void add_forces(const loads::LoadCase& load_case, const UnitSystem& units,
                 picture::PictureJob& job) {
   using Kind = picture::PictureLoadKind;
   const auto add = [&](const loads::Surfaces& surfaces, const Vec3& direction,
-                       Kind kind, const std::string& label) {
-    for (const std::string& surface : surfaces) {
-      if (direction.norm() > 0.0) {
-        job.loads.push_back({surface, direction, label, kind});
-      }
+                       Kind kind, const std::string& label,
+                       const std::optional<Vec3>& point = {}) {
+    if (direction.norm() > 0.0) {
+      job.loads.push_back({surfaces, direction, label, kind, point});
     }
   };
   for (const loads::RemoteLoad& load : load_case.remote_loads) {
     add(load.surfaces, load.force, Kind::Force,
-        load_label(load.force.norm(), units.force));
+        load_label(load.force.norm(), units.force), load.point);
     add(load.surfaces, load.moment, Kind::Moment,
-        moment_label(load.moment.norm(), units));
+        moment_label(load.moment.norm(), units), load.point);
   }
   for (const loads::BearingLoad& load : load_case.bearings) {
     add(load.surfaces, load.force, Kind::Force,
-        load_label(load.force.norm(), units.force));
+        load_label(load.force.norm(), units.force), load.point);
   }
   for (const loads::SurfaceForce& force : load_case.forces) {
     add(force.surfaces, force.total, Kind::Force,
@@ -141,7 +141,7 @@ void add_body_loads(const loads::LoadCase& load_case,
                     picture::PictureJob& job) {
   if (load_case.gravity.norm() > 0.0) {
     job.loads.push_back(
-        {"", load_case.gravity, "gravity", picture::PictureLoadKind::Body});
+        {{}, load_case.gravity, "gravity", picture::PictureLoadKind::Body});
   }
   const bool varied = std::any_of(
       load_case.tractions.begin(), load_case.tractions.end(),

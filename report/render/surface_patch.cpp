@@ -103,6 +103,33 @@ std::vector<double> crossings(const SurfaceMesh& mesh, const Vec3& from,
   return found;
 }
 
+namespace {
+
+/// Along `along` from `at`, beyond all of the part.
+ArrowPlace beyond_part(const SurfaceMesh& mesh, const Vec3& at,
+                       const Vec3& along, double length, double gap) {
+  const std::vector<double> hits = crossings(mesh, at, along);
+  const double beyond = hits.empty() ? 0.0 : hits.back();
+  const Vec3 start = at + (beyond + gap) * along;
+  return {start, start + length * along};
+}
+
+}  // namespace
+
+ArrowPlace place_free_arrow(const SurfaceMesh& mesh, const Vec3& at,
+                            const Vec3& along, double length, double gap) {
+  // From within the part a ray crosses its surface an odd number of times.
+  const auto is_free = [&](const Vec3& towards) {
+    const std::vector<double> hits = crossings(mesh, at, towards);
+    return hits.size() % 2 == 0 && (hits.empty() || hits.front() >= length);
+  };
+  if (is_free(along)) {
+    return {at, at + length * along};
+  }
+  return is_free(-along) ? ArrowPlace{at - length * along, at}
+                         : beyond_part(mesh, at, along, length, gap);
+}
+
 ArrowPlace place_arrow(const SurfaceMesh& mesh, const Anchor& anchor,
                        const Vec3& along, double length, double gap) {
   const auto is_free = [&](const Vec3& from, const Vec3& to) {
@@ -118,10 +145,7 @@ ArrowPlace place_arrow(const SurfaceMesh& mesh, const Anchor& anchor,
   if (presses ? is_free(tip, tail) : is_free(root, tip)) {
     return {tail, tip};
   }
-  const std::vector<double> hits = crossings(mesh, anchor.at, along);
-  const double beyond = hits.empty() ? 0.0 : hits.back();
-  const Vec3 start = anchor.at + (beyond + gap) * along;
-  return {start, start + length * along};
+  return beyond_part(mesh, anchor.at, along, length, gap);
 }
 
 std::vector<int> spread_facets(const SurfaceMesh& mesh,

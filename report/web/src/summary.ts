@@ -114,6 +114,12 @@ export function keyFigures(data: PageData): HTMLElement | null {
   return cards.length > 0 ? h("dl", { class: "cards" }, ...cards) : null;
 }
 
+/** " (worst load along 0.6, 0, 0.8)" of a load from any direction. */
+function worstDirection(result: Result, name: string): string {
+  const worst = result.worst_directions?.[name];
+  return worst ? ` (worst load along ${worst.direction.map((x) => number(x, 3)).join(", ")})` : "";
+}
+
 /** Parameters and responses with their errors. */
 export function answerSection(data: PageData): HTMLElement | null {
   const result = data.result;
@@ -158,7 +164,7 @@ export function answerSection(data: PageData): HTMLElement | null {
           "Responses",
           [{ head: "response" }, { head: "answer", numeric }, { head: "mesh error", numeric }, { head: "at the start", numeric }],
           responses.map(([name, value]) => [
-            words(name),
+            words(name) + worstDirection(result, name),
             outputs.text(name, value),
             outputs.error(name, result.response_errors?.[name]),
             outputs.text(name, result.start?.responses[name]),
