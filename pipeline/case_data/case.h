@@ -49,6 +49,7 @@ struct Case {
   std::vector<FieldEntry> fields;
   std::vector<MaterialEntry> materials;
   std::vector<LoadCaseEntry> load_cases;
+  std::vector<DirectionsEntry> directions;  // of load cases, in their order
   std::vector<ResponseEntry> responses;
   Resolution resolution;
   ProcessEntry process;

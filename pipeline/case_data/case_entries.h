@@ -11,6 +11,7 @@
 
 #include "core/math/expression.h"
 #include "core/math/measure.h"
+#include "core/math/worst_direction.h"
 #include "evolve/films/film_system.h"
 #include "evolve/scan/scan.h"
 #include "evolve/walls/thicken.h"
@@ -226,8 +227,18 @@ struct LoadEntry {
   std::optional<QuantityVector> axis;  // of a bearing
   PlaceQuantity place;                 // pressure, temperature
   std::array<PlaceQuantity, 3> traction;
-  Quantity number;  // rate of spin, reference temperature
+  Quantity number;               // rate of spin, reference temperature
+  std::optional<Quantity> size;  // of a force from any direction in the cone
+  Cone cone;
   SourceLine line = 0;
+};
+
+/// A load of given size from any direction in a cone: three of the case's load
+/// cases, NAME_x, NAME_y and NAME_z, are that size along x, y and z.
+struct DirectionsEntry {
+  std::string name;
+  int first = 0;  // index of NAME_x
+  Cone cone;
 };
 
 /// The numbers of a support are here, not in its struct.
@@ -323,7 +334,10 @@ struct ResponseEntry {
   std::string surface;
   QuantityVector direction;             // an axis for Rotation
   std::optional<QuantityVector> point;  // on the axis of Inertia
-  int load_case = 0;            // index; of Frequency also AnalysisEntry::kFree
+  int load_case = 0;  // index; of Frequency also AnalysisEntry::kFree
+  /// Of the worst direction in this cone: load_case and the two after it are
+  /// the unit loads (DirectionsEntry).
+  std::optional<Cone> worst_in;
   std::vector<int> load_cases;  // of Fatigue the two: indices
   std::optional<PlaceQuantity> weight;
   double power = 8.0;

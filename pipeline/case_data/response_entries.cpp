@@ -47,6 +47,20 @@ bool is_extreme(const Case& input, int response) {
                      [&](int other) { return is_extreme(input, other); });
 }
 
+bool knows_worst_direction(const ResponseEntry& entry) {
+  switch (entry.kind) {
+    case ResponseKind::MeanDisplacement:
+    case ResponseKind::Rotation:
+    case ResponseKind::Compliance:
+    case ResponseKind::StrainEnergy:
+      return true;
+    case ResponseKind::StressRatio:
+      return entry.stress == StressMeasure::VonMises;
+    default:
+      return false;
+  }
+}
+
 int response_index(const Case& input, const std::string& name) {
   int index = 0;
   while (input.responses[static_cast<std::size_t>(index)].name != name) {

@@ -100,21 +100,33 @@ bool Adjoint::solve_adjoints(DesignGradient& result) {
         back.adjoint_reactions = factor * solution.reactions[c];
         continue;
       }
+      if (partials.of_first) {
+        continue;
+      }
       open.push_back(&back);
       load_cases.push_back(partials.load_case);
       right.push_back(partials.by_displacement);
     }
   }
-  if (open.empty()) {
-    return true;
+  equations::AdjointSolution adjoint;
+  if (!open.empty()) {
+    adjoint = in_.part.elasticity->solve_adjoints(in_.elastic_state, load_cases,
+                                                  right);
   }
-  equations::AdjointSolution adjoint =
-      in_.part.elasticity->solve_adjoints(in_.elastic_state, load_cases, right);
   result.solves += static_cast<int>(open.size());
   result.failure = adjoint.failure;
   for (std::size_t k = 0; k < open.size() && !result.failure; ++k) {
     open[k]->lambda = std::move(adjoint.lambda[k]);
     open[k]->adjoint_reactions = std::move(adjoint.reactions[k]);
+  }
+  for (Backward& backward : backwards_) {
+    for (std::size_t k = 0; k < backward.cases.size(); ++k) {
+      if (const auto factor = backward.partials.cases[k].of_first) {
+        const BackwardCase& first = backward.cases.front();
+        backward.cases[k].lambda = *factor * first.lambda;
+        backward.cases[k].adjoint_reactions = *factor * first.adjoint_reactions;
+      }
+    }
   }
   return !result.failure;
 }

@@ -20,8 +20,9 @@ bool is_mean(const ResponseEntry& response) {
          response.kind == ResponseKind::VonMisesKs;
 }
 
+/// Of one load case's stress: of the worst direction there is no peak beside.
 bool is_von_mises_ratio(const ResponseEntry& response) {
-  return response.kind == ResponseKind::StressRatio &&
+  return response.kind == ResponseKind::StressRatio && !response.worst_in &&
          response.stress == case_data::StressMeasure::VonMises;
 }
 

@@ -112,13 +112,18 @@ ResponsePartials rotation(const ResponseTask& task) {
       task.response.load_case);
 }
 
+ResponsePartials energy(const ResponseTask& task) {
+  return energy_of(task, task.fields.inputs.load_cases[task.response.load_case],
+                   displacement(task));
+}
+
+}  // namespace
+
 /// Half the work of the loads is the strain energy where it all goes into the
 /// solid and nothing else does work. Enforced displacements make the solution
 /// another than the loads' own: it is not its adjoint then.
-ResponsePartials energy(const ResponseTask& task) {
-  const loads::LoadCase& load_case =
-      task.fields.inputs.load_cases[task.response.load_case];
-  const VectorX& u = displacement(task);
+ResponsePartials energy_of(const ResponseTask& task,
+                           const loads::LoadCase& load_case, const VectorX& u) {
   const bool strain =
       task.response.kind == case_data::ResponseKind::StrainEnergy;
   const bool enforced = loads::enforces(load_case);
@@ -144,6 +149,8 @@ ResponsePartials energy(const ResponseTask& task) {
   }
   return result;
 }
+
+namespace {
 
 /// A sum over modes that were found with the design.
 ResponsePartials modal(const ResponseTask& task) {
@@ -363,6 +370,9 @@ ResponsePartials scan_distance(const ResponseTask& task) {
 
 ResponsePartials compute_partials(const ResponseTask& task) {
   using Kind = case_data::ResponseKind;
+  if (task.response.worst_in) {
+    return worst_partials(task);
+  }
   switch (task.response.kind) {
     case Kind::MeanDisplacement:
       return mean_displacement(task);

@@ -40,11 +40,16 @@ double place_rate(const case_data::ResponseEntry& response,
                   const case_data::ResponseInputs& rates,
                   const ResponseContext& fields) {
   if (rates.weight) {
+    VectorX u = fields.solution.displacements[response.load_case];
+    if (response.worst_in) {
+      const Vec3 d =
+          *partials_of(response, inputs, fields, element::Derivatives::None)
+               .worst_direction;
+      u = combined_displacement(fields, response.load_case, d);
+    }
     return functionals::weighted_displacement_functional(
                fields.mesh, response.surface, inputs.direction,
-               {rates.weight, {}},
-               fields.solution.displacements[response.load_case],
-               element::Derivatives::None)
+               {rates.weight, {}}, u, element::Derivatives::None)
         .value;
   }
   return rates.level ? functionals::intrusion_rate(

@@ -287,6 +287,11 @@ nlohmann::ordered_json result_json(const case_data::Case& input,
   }
   if (best != nullptr) {
     add_envelopes(input, best->responses, json);
+    for (const forward::WorstLoad& worst : result.worst_loads) {
+      json["worst_directions"][names[worst.response]] = {
+          {"load_case", worst.load_case},
+          {"direction", files::place_json(worst.direction)}};
+    }
     add_norm_peaks(input, best->responses, result.stress, json);
   }
   if (result.eigen) {

@@ -333,6 +333,9 @@ bool StudyRun::finish_best() {
   fields_.stresses =
       forward::part_stresses(fields_.mesh, fields_.inputs, fields_.solution);
   result_.stress = forward::stress_figures(fields_);
+  result_.worst_loads = forward::worst_loads(
+      input_,
+      {fields_.inputs, fields_.mesh, fields_.solution, fields_.exclusion.what});
   result_.exclusion = fields_.exclusion;
   for (std::string& warning :
        forward::part_warnings(input_, fields_, result_.stress)) {
@@ -511,11 +514,14 @@ void StudyRun::add_ratio_errors() {
     const case_data::ResponseEntry& response = input_.responses[r];
     double& error = result_.response_errors[static_cast<Eigen::Index>(r)];
     if (response.kind == case_data::ResponseKind::StressRatio) {
-      const forward::StressFigures& figures =
-          result_.stress[static_cast<std::size_t>(response.load_case)];
-      error = std::fmax(error,
-                        result_.best->responses[static_cast<Eigen::Index>(r)] *
-                            figures.peak_error / figures.max_von_mises);
+      const int count = response.worst_in ? 3 : 1;  // the worst of unit loads
+      for (int k = 0; k < count; ++k) {
+        const forward::StressFigures& figures =
+            result_.stress[static_cast<std::size_t>(response.load_case + k)];
+        error = std::fmax(
+            error, result_.best->responses[static_cast<Eigen::Index>(r)] *
+                       figures.peak_error / figures.max_von_mises);
+      }
     } else if (response.kind == case_data::ResponseKind::Envelope) {
       const int part =
           case_data::extreme_part(response, result_.best->responses);
