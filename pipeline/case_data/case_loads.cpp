@@ -85,6 +85,9 @@ loads::RigidPin pin_of(const PinEntry& entry, const CaseValues& values) {
 
 void add_load(const LoadEntry& load, const CaseValues& values,
               loads::LoadCase& result) {
+  if (load.size) {
+    values.positive(*load.size);
+  }
   if (load.by == LoadPath::Bearing) {
     result.bearings.push_back(
         {.surfaces = load.surfaces, .force = values.at(load.vector)});

@@ -20,9 +20,8 @@ bool is_mean(const ResponseEntry& response) {
          response.kind == ResponseKind::VonMisesKs;
 }
 
-/// Of one load case's stress: of the worst direction there is no peak beside.
 bool is_von_mises_ratio(const ResponseEntry& response) {
-  return response.kind == ResponseKind::StressRatio && !response.worst_in &&
+  return response.kind == ResponseKind::StressRatio &&
          response.stress == case_data::StressMeasure::VonMises;
 }
 
@@ -70,7 +69,7 @@ std::vector<NormPeak> norm_peaks(const case_data::Case& input,
   for (int k = 0; k < static_cast<int>(input.responses.size()); ++k) {
     const ResponseEntry& response =
         input.responses[static_cast<std::size_t>(k)];
-    const auto load_case = static_cast<std::size_t>(response.load_case);
+    const std::size_t load_case = case_data::shown_load_case(input, response);
     if ((!is_mean(response) && !is_von_mises_ratio(response)) ||
         k >= responses.size() || load_case >= stress.size()) {
       continue;

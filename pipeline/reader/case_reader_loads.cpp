@@ -141,7 +141,8 @@ void read_support(CaseContext& context, const CaseTable& table,
   } else if (rigid) {
     load_case.pins.push_back(read_pin(context, table, surfaces));
   } else {
-    case_data::SupportEntry entry{.line = table.line()};
+    case_data::SupportEntry entry;
+    entry.line = table.line();
     read_fix(context, table, entry);
     for (const std::string& surface : surfaces) {
       entry.support.surface = surface;
@@ -388,6 +389,9 @@ void add_load_case(CaseContext& context, const CaseTable& table,
     along.loads = {load};
     along.loads.front().vector = {};
     along.loads.front().vector[k] = *load.size;
+    if (k > 0) {
+      along.loads.front().size.reset();  // checked once
+    }
     result.load_cases.push_back(std::move(along));
   }
 }

@@ -167,10 +167,10 @@ std::string result_text(const case_data::Case& input,
           fmt::format("   ({} '{}')", response.least ? "least" : "most",
                       names[case_data::extreme_part(response, best.responses)]);
     }
-    for (const forward::WorstLoad& worst : result.worst_loads) {
+    for (const responses::WorstLoad& worst : result.worst_loads) {
       text += worst.response == k
                   ? fmt::format("   (worst along {})",
-                                forward::direction_text(worst.direction))
+                                responses::direction_text(worst.direction))
                   : "";
     }
     text += "\n";

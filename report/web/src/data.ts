@@ -162,6 +162,10 @@ export interface Distribution {
 export interface StressFigures {
   max_von_mises: number | null;
   position?: number[];
+  /** Of a load from any direction: one of those that it is made of. */
+  unit_load?: boolean;
+  /** Of one that shows such a load: the worst, a unit vector. */
+  direction?: number[];
   safety_factor?: {
     smallest: number | null;
     von_mises: number;

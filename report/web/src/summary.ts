@@ -76,7 +76,8 @@ function worstLoadCase(result: Result): [string, StressFigures, number] | null {
   const found =
     cases.find(([name]) => name === result.worst_load_case) ??
     cases.reduce((most, one) => (worse(one[1], most[1]) ? one : most));
-  return [found[0], found[1], cases.length > 1 ? cases.length : 0];
+  const acting = cases.filter(([, f]) => !f.unit_load).length;
+  return [found[0], found[1], acting > 1 ? acting : 0];
 }
 
 /** What the study makes least, then the others in the file's order: four. */

@@ -1,4 +1,4 @@
-#include "pipeline/forward/worst_loads.h"
+#include "pipeline/responses/worst_loads.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include "pipeline/case_data/response_entries.h"
 
-namespace meniscus::forward {
+namespace meniscus::responses {
 
 std::vector<WorstLoad> worst_loads(const case_data::Case& input,
                                    const ResponseContext& fields) {
@@ -31,6 +31,31 @@ std::vector<WorstLoad> worst_loads(const case_data::Case& input,
   return worst;
 }
 
+loads::LoadCase combined_load(const std::vector<loads::LoadCase>& load_cases,
+                              int first, const Vec3& d) {
+  const auto unit = load_cases.begin() + first;
+  loads::LoadCase combined = *unit;
+  for (std::size_t i = 0; i < combined.forces.size(); ++i) {
+    combined.forces[i].total.setZero();
+    for (int k = 0; k < 3; ++k) {
+      combined.forces[i].total += d[k] * unit[k].forces[i].total;
+    }
+  }
+  for (std::size_t i = 0; i < combined.remote_loads.size(); ++i) {
+    combined.remote_loads[i].force.setZero();
+    for (int k = 0; k < 3; ++k) {
+      combined.remote_loads[i].force += d[k] * unit[k].remote_loads[i].force;
+    }
+  }
+  return combined;
+}
+
+VectorX combined(const std::vector<VectorX>& of_load_cases, int first,
+                 const Vec3& d) {
+  const auto unit = of_load_cases.begin() + first;
+  return d[0] * unit[0] + d[1] * unit[1] + d[2] * unit[2];
+}
+
 std::string direction_text(const Vec3& direction) {
   constexpr double kNothing = 5e-4;  // below what three digits show
   const auto shown = [](double x) { return std::abs(x) < kNothing ? 0.0 : x; };
@@ -38,4 +63,4 @@ std::string direction_text(const Vec3& direction) {
                      shown(direction.y()), shown(direction.z()));
 }
 
-}  // namespace meniscus::forward
+}  // namespace meniscus::responses

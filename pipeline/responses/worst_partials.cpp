@@ -6,9 +6,10 @@
 
 #include "core/math/worst_direction.h"
 #include "fea/functionals/stress_criteria.h"
-#include "pipeline/forward/response_partials.h"
+#include "pipeline/responses/response_partials.h"
+#include "pipeline/responses/worst_loads.h"
 
-namespace meniscus::forward {
+namespace meniscus::responses {
 
 namespace {
 
@@ -71,34 +72,15 @@ ResponsePartials worst_linear(const ResponseTask& task) {
   return result;
 }
 
-/// The load in direction d: the unit loads have one force each.
-loads::LoadCase combined_load(const ResponseTask& task, const Vec3& d) {
-  const auto first =
-      task.fields.inputs.load_cases.begin() + task.response.load_case;
-  loads::LoadCase combined = *first;
-  for (std::size_t i = 0; i < combined.forces.size(); ++i) {
-    combined.forces[i].total.setZero();
-    for (int k = 0; k < 3; ++k) {
-      combined.forces[i].total += d[k] * first[k].forces[i].total;
-    }
-  }
-  for (std::size_t i = 0; i < combined.remote_loads.size(); ++i) {
-    combined.remote_loads[i].force.setZero();
-    for (int k = 0; k < 3; ++k) {
-      combined.remote_loads[i].force += d[k] * first[k].remote_loads[i].force;
-    }
-  }
-  return combined;
-}
-
 /// Work and energy are quadratic in the load: their matrix from its values at
 /// the unit loads and their sums.
 ResponsePartials worst_energy(const ResponseTask& task) {
   const auto at = [&](const Vec3& d, element::Derivatives derivatives) {
-    return energy_of(
-        {task.response, task.inputs, task.fields, derivatives},
-        combined_load(task, d),
-        combined_displacement(task.fields, task.response.load_case, d));
+    return energy_of({task.response, task.inputs, task.fields, derivatives},
+                     combined_load(task.fields.inputs.load_cases,
+                                   task.response.load_case, d),
+                     combined(task.fields.solution.displacements,
+                              task.response.load_case, d));
   };
   const auto value = [&](const Vec3& d) {
     return at(d, element::Derivatives::None).value;
@@ -123,12 +105,6 @@ ResponsePartials worst_energy(const ResponseTask& task) {
 
 }  // namespace
 
-VectorX combined_displacement(const ResponseContext& fields, int first,
-                              const Vec3& d) {
-  const auto u = fields.solution.displacements.begin() + first;
-  return d[0] * u[0] + d[1] * u[1] + d[2] * u[2];
-}
-
 ResponsePartials worst_partials(const ResponseTask& task) {
   using Kind = case_data::ResponseKind;
   const int first = task.response.load_case;
@@ -146,4 +122,4 @@ ResponsePartials worst_partials(const ResponseTask& task) {
   }
 }
 
-}  // namespace meniscus::forward
+}  // namespace meniscus::responses

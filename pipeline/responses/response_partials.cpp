@@ -1,4 +1,4 @@
-#include "pipeline/forward/response_partials.h"
+#include "pipeline/responses/response_partials.h"
 
 #include <algorithm>
 #include <limits>
@@ -18,7 +18,7 @@
 #include "fea/modes/eigenvalue_functionals.h"
 #include "fea/stress/peak_stress.h"
 
-namespace meniscus::forward {
+namespace meniscus::responses {
 
 namespace {
 
@@ -144,6 +144,7 @@ ResponsePartials energy_of(const ResponseTask& task,
     by_node *= share;
   }
   if (task.derivatives == element::Derivatives::All) {
+    result.cases.front().by_displacement *= share;
     result.cases.front().self_adjoint = enforced ? 0.0 : share;
     result.cases.front().by_forces = share * u;
   }
@@ -455,4 +456,4 @@ double sharpness_of(const case_data::ResponseEntry& response,
          response.smoothing.value_or(kPartOfEdge * fields.inputs.fea_edge);
 }
 
-}  // namespace meniscus::forward
+}  // namespace meniscus::responses

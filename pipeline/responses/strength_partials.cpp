@@ -3,9 +3,9 @@
 
 #include "fea/functionals/nodal_peak.h"
 #include "fea/functionals/stress_criteria.h"
-#include "pipeline/forward/response_partials.h"
+#include "pipeline/responses/response_partials.h"
 
-namespace meniscus::forward {
+namespace meniscus::responses {
 
 namespace {
 
@@ -85,4 +85,4 @@ ResponsePartials fatigue(const ResponseTask& task) {
           : functionals::crossland_ratio(std::move(endurance)));
 }
 
-}  // namespace meniscus::forward
+}  // namespace meniscus::responses

@@ -5,9 +5,9 @@
 
 #include "fea/functionals/nodal_peak.h"
 #include "pipeline/case_data/response_kinds.h"
-#include "pipeline/forward/responses.h"
+#include "pipeline/responses/responses.h"
 
-namespace meniscus::forward {
+namespace meniscus::responses {
 
 /// One response of one design, on loan.
 struct ResponseTask {
@@ -31,10 +31,6 @@ ResponsePartials energy_of(const ResponseTask& task,
 /// Of the worst direction of a load from any, in worst_partials.cpp: all that
 /// case_data::knows_worst_direction() says.
 ResponsePartials worst_partials(const ResponseTask& task);
-
-/// The displacement under d_x times the unit load `first`, and so on.
-VectorX combined_displacement(const ResponseContext& fields, int first,
-                              const Vec3& d);
 
 /// Nodal peak of states of load cases, in their order.
 ResponsePartials nodal_peak_partials(
@@ -61,4 +57,4 @@ double ks_scale(const case_data::ResponseEntry& response,
 double sharpness_of(const case_data::ResponseEntry& response,
                     const ResponseContext& fields);
 
-}  // namespace meniscus::forward
+}  // namespace meniscus::responses

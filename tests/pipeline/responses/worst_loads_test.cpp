@@ -1,5 +1,5 @@
 /// Loads from any direction through the whole forward model.
-#include "pipeline/forward/worst_loads.h"
+#include "pipeline/responses/worst_loads.h"
 
 #include <cmath>
 #include <random>
@@ -83,7 +83,7 @@ std::string along(const Vec3& d) {
 
 struct Found {
   VectorX responses;
-  std::vector<forward::WorstLoad> worst;
+  std::vector<responses::WorstLoad> worst;
 };
 
 Found found(const std::string& text) {
@@ -95,8 +95,8 @@ Found found(const std::string& text) {
   EXPECT_FALSE(there.failure);
   return {
       there.responses,
-      forward::worst_loads(input, {fields.inputs, fields.mesh, fields.solution,
-                                   fields.exclusion.what})};
+      responses::worst_loads(input, {fields.inputs, fields.mesh,
+                                     fields.solution, fields.exclusion.what})};
 }
 
 TEST(WorstLoads, AreThoseOfTheirOwnDirections) {
@@ -104,7 +104,7 @@ TEST(WorstLoads, AreThoseOfTheirOwnDirections) {
        {text_of(kSize), in_cone(40.0, Vec3(0.5, -0.4, -1.0))}) {
     const Found worst = found(text);
     ASSERT_EQ(worst.worst.size(), 6U);
-    for (const forward::WorstLoad& load : worst.worst) {
+    for (const responses::WorstLoad& load : worst.worst) {
       EXPECT_EQ(load.load_case, "service");
       const double own = found(along(load.direction)).responses[load.response];
       const double value = worst.responses[load.response];
@@ -184,6 +184,7 @@ TEST(WorstLoads, MistakesAreToldByLine) {
               Contains(HasSubstr("within is 200 degrees")));
   EXPECT_THAT(told("size = 5, within = \"20 deg\", about = [0, 0, 0]"),
               Contains(HasSubstr("about has no length")));
+  EXPECT_THAT(told("size = -5"), Contains(HasSubstr("above 0")));
   EXPECT_THAT(told("size = 5, by = \"bearing\""),
               Contains(HasSubstr("unit loads do not add up")));
   EXPECT_THAT(told("size = 5, moment = [1, 0, 0]"),

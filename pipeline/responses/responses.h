@@ -10,10 +10,10 @@
 #include "fea/functionals/thickness.h"
 #include "fea/stress/exclusion_zones.h"
 #include "pipeline/case_data/case.h"
-#include "pipeline/forward/response_modes.h"
-#include "pipeline/forward/scans.h"
+#include "pipeline/responses/response_modes.h"
+#include "pipeline/responses/scans.h"
 
-namespace meniscus::forward {
+namespace meniscus::responses {
 
 /// What a design came to, on loan to the responses.
 struct ResponseContext {
@@ -92,4 +92,4 @@ double place_rate(const case_data::ResponseEntry& response,
                   const case_data::ResponseInputs& rates,
                   const ResponseContext& fields);
 
-}  // namespace meniscus::forward
+}  // namespace meniscus::responses
