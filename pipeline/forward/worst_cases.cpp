@@ -34,8 +34,8 @@ Vec3 direction_of_most_stress(const EvaluationFields& fields, int first,
   std::vector<functionals::StressState> states;
   states.reserve(3);
   for (int k = first; k < first + 3; ++k) {
-    states.push_back({fields.inputs.load_cases[k],
-                      fields.solution.displacements[k]});
+    states.push_back(
+        {fields.inputs.load_cases[k], fields.solution.displacements[k]});
   }
   const functionals::NodalPeak peak = functionals::nodal_peak(
       {.mesh = fields.mesh,

@@ -204,17 +204,18 @@ class LoadDrawing {
       lines.push_back({0, static_cast<int>(ends.size())});
       ends.push_back(patch.centre);
     }
-    panel_.add_tubes(ends, lines, kLine * diagonal_, kLoadColour);
-    panel_.show(ends);
-    const Vec3 along = load.direction.normalized();
     if (load.kind == picture::PictureLoadKind::Moment) {
       draw_moment(load, {at, Vec3::Zero()});
     } else {
-      draw_arrow(
-          load, at,
-          place_free_arrow(mesh_, at, along,
-                           kArrowLength * diagonal_ * share(load), gap_));
+      const ArrowPlace arrow =
+          place_free_arrow(mesh_, at, load.direction.normalized(), to_eye_,
+                           kArrowLength * diagonal_ * share(load), gap_);
+      draw_arrow(load, at, arrow);
+      lines.push_back({0, static_cast<int>(ends.size())});
+      ends.push_back(arrow.tail);
     }
+    panel_.add_tubes(ends, lines, kLine * diagonal_, kLoadColour);
+    panel_.show(ends);
   }
 
   /// `at`: where it acts; the label is at the arrow's other end.

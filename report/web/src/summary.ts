@@ -1,6 +1,6 @@
 import type { PageData, Result, StressFigures } from "./data";
 import { h, section, table } from "./dom";
-import { count, number, percent, quantity, seconds, words } from "./format";
+import { count, direction, number, percent, quantity, seconds, words } from "./format";
 import { inputsOf, responsesOf } from "./measures";
 
 const STATUS: Record<string, string> = {
@@ -118,7 +118,7 @@ export function keyFigures(data: PageData): HTMLElement | null {
 /** " (worst load along 0.6, 0, 0.8)" of a load from any direction. */
 function worstDirection(result: Result, name: string): string {
   const worst = result.worst_directions?.[name];
-  return worst ? ` (worst load along ${worst.direction.map((x) => number(x, 3)).join(", ")})` : "";
+  return worst ? ` (worst load along ${direction(worst.direction)})` : "";
 }
 
 /** Parameters and responses with their errors. */

@@ -7,10 +7,13 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "pipeline/case_data/response_entries.h"
 #include "pipeline/forward/forward_model.h"
 #include "pipeline/forward/gradient_check.h"
+#include "pipeline/forward/stress_figures.h"
+#include "pipeline/forward/worst_cases.h"
 #include "tests/support/case_text.h"
 
 namespace meniscus::worst_loads_test {
@@ -142,6 +145,56 @@ TEST(WorstLoads, OfConesWithoutWidthAndOfAllDirections) {
     EXPECT_NEAR(narrow[r], own[r], kSolved * std::abs(own[r])) << r;
     EXPECT_NEAR(wide[r], all[r], kSolved * std::abs(all[r])) << r;
   }
+}
+
+forward::EvaluationFields stressed(const case_data::Case& input) {
+  const forward::ForwardModel model(input);
+  forward::EvaluationFields fields;
+  EXPECT_FALSE(
+      model.evaluate(case_data::initial_design(input), &fields).failure);
+  forward::find_stresses(input, fields);
+  return fields;
+}
+
+TEST(WorstLoads, AreShownByALoadCaseOfTheirName) {
+  const Vec3 about = Vec3(0.5, -0.4, -1.0).normalized();
+  const case_data::Case input = read(in_cone(40.0, about));
+  const forward::EvaluationFields fields = stressed(input);
+  const std::vector<forward::StressFigures> figures =
+      forward::stress_figures(fields);
+  ASSERT_EQ(figures.size(), 4U);
+  EXPECT_EQ(figures[3].load_case, "service");
+  ASSERT_TRUE(figures[3].direction);
+  const Vec3 d = *figures[3].direction;
+  EXPECT_GE(d.dot(about), std::cos(40.0 * EIGEN_PI / 180.0) - 1e-12);
+  const auto peak_along = [](const Vec3& direction) {
+    const std::vector<forward::StressFigures> own =
+        forward::stress_figures(stressed(read(along(direction))));
+    return own[0].readings.largest().von_mises;
+  };
+  const double peak = figures[3].readings.largest().von_mises;
+  EXPECT_NEAR(peak_along(d), peak, kSolved * peak);
+  const Vec3 aside = about.unitOrthogonal();
+  for (const double turn : {0.0, 0.35, -0.35}) {
+    const Vec3 other = std::cos(turn) * about + std::sin(turn) * aside;
+    EXPECT_LE(peak_along(other), peak * (1.0 + kSolved)) << turn;
+  }
+  // Its unit loads are nobody's, wherever their stress is higher.
+  EXPECT_EQ(forward::worst_load_case(figures), 3U);
+  const nlohmann::ordered_json json = {
+      {"stress", forward::stress_json(figures)}};
+  EXPECT_TRUE(json["stress"]["service"].contains("safety_factor"));
+  EXPECT_FALSE(json["stress"]["service_x"].contains("safety_factor"));
+  // A run's folder knows the load again.
+  case_data::EvaluatedCase again =
+      case_data::evaluate(input, case_data::initial_design(input));
+  forward::add_worst_cases(input, json, again);
+  ASSERT_EQ(again.load_cases.size(), 4U);
+  EXPECT_EQ(again.load_cases[3].name, "service");
+  EXPECT_LT((again.load_cases[3].remote_loads[0].force -
+             fields.inputs.load_cases[3].remote_loads[0].force)
+                .norm(),
+            1e-12);
 }
 
 TEST(WorstLoads, GradientsAreExactThroughTheModel) {
