@@ -123,7 +123,8 @@ Vec3 worst_stress_direction(std::span<const Stress> stress, const Cone& cone) {
   return worst_of_quadratic(Q, cone).direction;
 }
 
-NodeCriterion worst_von_mises_ratio(std::vector<double> allowable, Cone cone) {
+NodeCriterion worst_von_mises_ratio(std::vector<double> allowable,
+                                    const Cone& cone) {
   require_positive(allowable, "the allowable stress");
   return {.value = [allowable = std::move(allowable), cone](
                        int region, double /*power*/,

@@ -16,7 +16,8 @@ NodeCriterion von_mises_ratio(std::vector<double> allowable);
 /// The same of the worst sum d_x a + d_y b + d_z c of three states, d a unit
 /// vector in the cone: the root of a quadratic form's largest value, with what
 /// worst_of_quadratic() says of its derivative.
-NodeCriterion worst_von_mises_ratio(std::vector<double> allowable, Cone cone);
+NodeCriterion worst_von_mises_ratio(std::vector<double> allowable,
+                                    const Cone& cone);
 
 /// The d of that ratio at a node.
 Vec3 worst_stress_direction(std::span<const element::Stress> stress,

@@ -245,6 +245,10 @@ double Adjoint::rate(const Backward& backward,
   sum +=
       partials.by_direction.dot(rates.responses[backward.response].direction);
   sum += partials.by_point.dot(rates.responses[backward.response].point);
+  for (std::size_t p = 0; p < partials.by_pin_point.size(); ++p) {
+    const loads::LoadCase& held = rates.load_cases[entry(backward).load_case];
+    sum += partials.by_pin_point[p].dot(held.pins[p].point);
+  }
   for (const BackwardCase& back : backward.cases) {
     sum += loads::load_rate(*back.loads, rates.load_cases[back.load_case]);
   }

@@ -115,12 +115,7 @@ EigenFigures eigen_figures(const case_data::Case& input,
   modes::BucklingOptions options =
       buckling_options(analysis, model.base_solution().report, monitor);
   options.materials = &fields.inputs.materials;
-  std::vector<std::string> pinned;
   for (std::size_t c = 0; c < cases.size() && options.count > 0; ++c) {
-    if (!cases[c].pins.empty() && !analysis.buckling) {
-      pinned.push_back(cases[c].name);
-      continue;
-    }
     if (is_unit_load(fields, c) && !analysis.buckling) {
       continue;
     }
@@ -130,11 +125,6 @@ EigenFigures eigen_figures(const case_data::Case& input,
     figures.remark =
         "no buckling factors: the solver petsc keeps its matrix in other "
         "processes; another solver, or a coarser mesh with one, gives them";
-  }
-  if (!pinned.empty()) {
-    figures.remark =
-        fmt::format("no buckling factors of '{}': they do not know rigid pins",
-                    fmt::join(pinned, "', '"));
   }
   for (const WorstCase& worst : fields.worst_cases) {
     if (!analysis.buckling && figures.remark.empty()) {

@@ -56,11 +56,13 @@ ResponsePartials to_partials(functionals::MassFunctional functional) {
   return result;
 }
 
-ResponsePartials to_partials(modes::ModeFunctional functional) {
+ResponsePartials to_partials(modes::ModeFunctional functional, int load_case) {
   std::vector<double> by_density = std::move(functional.by_density);
+  Points by_pin_point = std::move(functional.by_pin_point);
   ResponsePartials result =
-      to_partials(static_cast<element::Functional&&>(functional));
+      to_partials(static_cast<element::Functional&&>(functional), load_case);
   result.by_density = std::move(by_density);
+  result.by_pin_point = std::move(by_pin_point);
   return result;
 }
 
@@ -161,12 +163,15 @@ ResponsePartials modal(const ResponseTask& task) {
     const FoundModes& found = task.fields.modes->problems[sum.problem];
     const modes::WeightedModes modes{found.values, found.shapes, sum.weights};
     const loads::LoadCase held = held_as(task.fields.inputs, found.load_case);
-    result = found.kind == case_data::ResponseKind::BucklingFactor
-                 ? to_partials(modes::factor_functional(
-                       task.fields.mesh, materials(task), held,
-                       displacement(task), modes))
-                 : to_partials(modes::frequency_functional(
-                       task.fields.mesh, materials(task), held, modes));
+    result =
+        found.kind == case_data::ResponseKind::BucklingFactor
+            ? to_partials(
+                  modes::factor_functional(task.fields.mesh, materials(task),
+                                           held, displacement(task), modes),
+                  found.load_case)
+            : to_partials(modes::frequency_functional(
+                              task.fields.mesh, materials(task), held, modes),
+                          found.load_case);
   }
   result.value = sum.value;
   return result;

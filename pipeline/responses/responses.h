@@ -55,6 +55,7 @@ struct ResponsePartials {
   std::optional<Vec3> worst_direction;
   Vec3 by_direction = Vec3::Zero();
   Vec3 by_point = Vec3::Zero();
+  Points by_pin_point;             // of the response's load case: of its modes
   std::vector<double> by_density;  // per region
   std::vector<double> by_modulus;  // Young's, per region; displacement held
   frozen::FilmCovector film;
