@@ -205,7 +205,8 @@ enum class LoadKind {
   Traction,
   Gravity,
   Spin,
-  Temperature
+  Temperature,
+  Preload  // of a bolt: two remote loads in balance
 };
 
 /// How surfaces take a force or a moment.
@@ -219,15 +220,16 @@ enum class LoadPath {
 struct LoadEntry {
   LoadKind kind = LoadKind::Force;
   LoadPath by = LoadPath::Spread;  // of forces and moments
-  loads::Surfaces surfaces;
-  QuantityVector vector;  // force, gravity, axis of spin
+  loads::Surfaces surfaces;        // of a preload the seat under the head
+  loads::Surfaces thread;          // of a preload
+  QuantityVector vector;           // force, gravity, axis of spin or of a bolt
   QuantityVector moment;
-  QuantityVector at;                   // the remote point; on the axis of spin
+  QuantityVector at;                   // the remote point; on such an axis
   bool has_at = false;                 // a bearing's may be left out
   std::optional<QuantityVector> axis;  // of a bearing
   PlaceQuantity place;                 // pressure, temperature
   std::array<PlaceQuantity, 3> traction;
-  Quantity number;               // rate of spin, reference temperature
+  Quantity number;               // rate of spin, reference temperature, tension
   std::optional<Quantity> size;  // of a force from any direction in the cone
   Cone cone;
   SourceLine line = 0;

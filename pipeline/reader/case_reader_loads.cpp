@@ -454,7 +454,45 @@ void read_load(CaseContext& context, const CaseTable& table,
   load_case.loads.push_back(std::move(load));
 }
 
+case_data::LoadEntry read_bolt(CaseContext& context, const CaseTable& table,
+                               const case_data::Case& result) {
+  case_data::LoadEntry bolt{
+      .kind = case_data::LoadKind::Preload,
+      .surfaces = surfaces_on(context, table, result, "seat"),
+      .thread = surfaces_on(context, table, result, "thread"),
+      .vector = table.vector_or_zero("axis"),
+      .at = table.vector_or_zero("at"),
+      .number = table.quantity_or_zero("preload"),
+      .line = table.line()};
+  for (const std::string& surface : bolt.surfaces) {
+    if (std::find(bolt.thread.begin(), bolt.thread.end(), surface) !=
+        bolt.thread.end()) {
+      note(context, table, "thread",
+           fmt::format("has '{}', which the head is on, too", surface));
+    }
+  }
+  return bolt;
+}
+
 }  // namespace
+
+TableSpec bolt_table() {
+  using D = Dimension;
+  using K = KeyType;
+  return {"bolts",
+          true,
+          TableNeed::Optional,
+          "A bolt that is tightened: in every load case its preload presses "
+          "into the seat under its head and pulls on its thread, in balance",
+          {{"preload", K::Quantity, D::Force, true, "tension in it, above 0"},
+           {"seat", K::NameOrNames, D::None, true,
+            "surfaces under its head, or a nut"},
+           {"thread", K::NameOrNames, D::None, true,
+            "surfaces that its thread, or a nut at its other end, pulls on"},
+           {"axis", K::Vector, std::nullopt, true,
+            "from the thread to the head; any length but 0"},
+           {"at", K::Vector, D::Length, true, "a point on its axis"}}};
+}
 
 TableSpec load_table() {
   using D = Dimension;
@@ -593,13 +631,13 @@ std::string surface_on(CaseContext& context, const CaseTable& table,
 }
 
 loads::Surfaces surfaces_on(CaseContext& context, const CaseTable& table,
-                            const case_data::Case& result) {
+                            const case_data::Case& result, const char* key) {
   loads::Surfaces surfaces;
-  for (const std::string& name : table.name_or_names("on")) {
-    std::string surface = known_surface(context, table, result, "on", name);
+  for (const std::string& name : table.name_or_names(key)) {
+    std::string surface = known_surface(context, table, result, key, name);
     if (std::find(surfaces.begin(), surfaces.end(), surface) !=
         surfaces.end()) {
-      note(context, table, "on", fmt::format("has '{}' twice", name));
+      note(context, table, key, fmt::format("has '{}' twice", name));
     } else {
       surfaces.push_back(std::move(surface));
     }
@@ -609,6 +647,10 @@ loads::Surfaces surfaces_on(CaseContext& context, const CaseTable& table,
 
 void read_load_cases(CaseContext& context, const toml::table& root,
                      case_data::Case& result) {
+  std::vector<case_data::LoadEntry> preloads;
+  for (const CaseTable& table : named_tables(context, root, "bolts")) {
+    preloads.push_back(read_bolt(context, table, result));
+  }
   for (const CaseTable& table : named_tables(context, root, "load_cases")) {
     case_data::LoadCaseEntry load_case{.name = table.name(),
                                        .line = table.line()};
@@ -618,6 +660,8 @@ void read_load_cases(CaseContext& context, const toml::table& root,
     for (const CaseTable& load : table.tables("loads", "load")) {
       read_load(context, load, result, load_case);
     }
+    load_case.loads.insert(load_case.loads.end(), preloads.begin(),
+                           preloads.end());
     check_pins(context, load_case);
     add_load_case(context, table, std::move(load_case), result);
   }

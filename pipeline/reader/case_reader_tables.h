@@ -92,9 +92,10 @@ std::string surface_on(CaseContext& context, const CaseTable& table,
 
 /// The same of a load or support, which may name several with `on`.
 loads::Surfaces surfaces_on(CaseContext& context, const CaseTable& table,
-                            const case_data::Case& result);
+                            const case_data::Case& result,
+                            const char* key = "on");
 
-/// Supports and loads; after the geometry.
+/// Supports and loads, those of bolts among all others; after the geometry.
 void read_load_cases(CaseContext& context, const toml::table& root,
                      case_data::Case& result);
 

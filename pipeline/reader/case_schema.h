@@ -77,7 +77,8 @@ TableSpec film_table();      // case_reader_films.cpp
 TableSpec solid_table();     // case_reader_films.cpp
 TableSpec wall_table();      // case_reader_walls.cpp
 TableSpec field_table();     // case_reader_energies.cpp
-TableSpec load_table();      // case_reader_loads.cpp
+TableSpec bolt_table();      // case_reader_loads.cpp
+TableSpec load_table();      // the same
 TableSpec analysis_table();  // case_reader_analysis.cpp
 TableSpec response_table();  // case_reader_responses.cpp
 TableSpec study_table();     // case_reader_kinds.cpp
