@@ -37,7 +37,7 @@ namespace meniscus::step {
 namespace {
 
 /// What BRepCheck_Analyzer finds first; empty for a valid shape.
-std::string fault_of(const StepShape& shape, const solid::Brep& brep) {
+std::string fault_of(const StepShape& shape) {
   const BRepCheck_Analyzer check(shape.solid);
   if (check.IsValid()) {
     return {};
@@ -68,7 +68,7 @@ std::string fault_of(const StepShape& shape, const solid::Brep& brep) {
         }
       }
     }
-    return fmt::format("face {} '{}' (BRepCheck{})", f, brep.faces[f].name,
+    return fmt::format("face {} '{}' (BRepCheck{})", f, shape.names[f],
                        statuses);
   }
   return "its shells";
@@ -103,7 +103,7 @@ StepReport write_step(const std::filesystem::path& path,
   const StepUnit unit = step_unit(options.unit);
   const StepSilence silence;
   const StepShape shape = step_shape(brep, unit.millimetres);
-  const std::string fault = fault_of(shape, brep);
+  const std::string fault = fault_of(shape);
   if (!fault.empty()) {
     throw MeshError(fmt::format("the faces make no valid solid: {}", fault));
   }
@@ -128,7 +128,7 @@ StepReport write_step(const std::filesystem::path& path,
   for (std::size_t f = 0; f < shape.faces.size(); ++f) {
     const TDF_Label label = tool->AddSubShape(part, shape.faces[f]);
     if (!label.IsNull()) {
-      TDataStd_Name::Set(label, ascii(brep.faces[f].name).c_str());
+      TDataStd_Name::Set(label, ascii(shape.names[f]).c_str());
     }
   }
   STEPCAFControl_Controller::Init();  // before its settings, and they before

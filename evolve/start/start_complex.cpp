@@ -25,6 +25,7 @@
 #include "evolve/start/fill_patch.h"
 #include "evolve/start/loft.h"
 #include "evolve/start/raise_disks.h"
+#include "evolve/start/solid_start.h"
 
 namespace meniscus::start {
 
@@ -40,12 +41,16 @@ struct Rim {
 class StartBuilder {
  public:
   StartBuilder(const films::FilmSystem& system, double edge)
-      : system_(system), edge_(edge), shared_(system.curves) {}
+      : system_(system),
+        edge_(edge),
+        shared_(system.curves),
+        solids_(system, edge) {}
 
   films::FilmComplex build() {
     check_names();
     result_.curves = system_.curves;
     facets_ = start_from_facets(system_, edge_, system_.keep_facets);
+    facets_.cuts.merge(solids_.take_cuts());
     facet_points_.assign(facets_.points.size(), -1);
     for (const films::FilmSpec& film : system_.films) {
       for (const std::string& name : film.curves) {
@@ -58,6 +63,11 @@ class StartBuilder {
       }
     }
     require_room_for_caps();
+    solids_.add_edges(
+        [&](const std::string& curve) -> const std::vector<int>& {
+          return rims_.at(curve).ids;
+        },
+        result_);
     shared_.mark_edges(result_);
     for (const films::FilmSpec& film : system_.films) {
       add_film(film);
@@ -123,7 +133,7 @@ class StartBuilder {
     constexpr double kBytes = 1500.0;  // of a facet
     double area = 0.0;
     for (const films::CapSpec& cap : system_.caps) {
-      if (!cap.start && !cap.ruled && cap.inner.empty()) {
+      if (!cap.start && !cap.ruled && cap.inner.empty() && cap.solid < 0) {
         for (const std::string& name : cap.curves()) {
           area += polygon_area_vector(points_of(rims_.at(name))).norm();
         }
@@ -367,6 +377,10 @@ class StartBuilder {
       add_sheet(cap.name, label, films::VertexKind::InCap);
       return;
     }
+    if (cap.solid >= 0) {
+      solids_.add_face(cap, label, result_);
+      return;
+    }
     std::vector<Rim> rims;
     std::vector<Points> loops;
     for (const std::string& name : cap.curves()) {
@@ -472,6 +486,7 @@ class StartBuilder {
   films::FilmComplex result_;
   std::map<std::string, Rim> rims_;
   films::SharedRims shared_;
+  SolidStart solids_;
   FacetStart facets_;
   std::vector<int> facet_points_;  // ids of its points; -1: not yet
 };

@@ -270,6 +270,17 @@ std::vector<std::string> with_feature_faces(
     const auto feature = std::find_if(
         input.features.begin(), input.features.end(),
         [&](const case_data::FeatureEntry& f) { return f.name == name; });
+    const auto solid =
+        std::find_if(input.step_solids.begin(), input.step_solids.end(),
+                     [&](const case_data::StepSolidEntry& s) {
+                       return s.spec.name == name;
+                     });
+    if (solid != input.step_solids.end()) {
+      for (const int face : solid->faces) {
+        result.push_back(case_data::face_name(*solid, face));
+      }
+      continue;
+    }
     if (feature == input.features.end()) {
       result.push_back(name);
       continue;

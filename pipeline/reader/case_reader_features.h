@@ -27,7 +27,7 @@ void read_features(CaseContext& context, const std::vector<CaseTable>& solids,
 /// The faces of the feature of that name, which must exist, among the solids.
 void add_feature_faces(const std::string& name, case_data::Case& result);
 
-/// Each name of a feature replaced by those of its faces.
+/// Each name of a feature or STEP solid replaced by those of its faces.
 std::vector<std::string> with_feature_faces(
     const case_data::Case& input, const std::vector<std::string>& names);
 

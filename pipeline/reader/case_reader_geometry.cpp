@@ -8,6 +8,7 @@
 #include "pipeline/case_data/case_checks.h"
 #include "pipeline/case_data/case_curves.h"
 #include "pipeline/reader/case_reader_features.h"
+#include "pipeline/reader/case_reader_solids.h"
 #include "pipeline/reader/case_reader_tables.h"
 
 namespace meniscus::reader {
@@ -183,6 +184,7 @@ void read_geometry(CaseContext& context, const toml::table& root,
   read_curves(context, root, result);
   const std::vector<CaseTable> solids = named_tables(context, root, "solids");
   read_features(context, solids, result);
+  read_step_solids(context, solids, result);
   read_films(context, root, result);
   read_solids(context, solids, result);
   if (context.problems.empty()) {

@@ -27,9 +27,21 @@ std::optional<CaseTable> single_table(CaseContext& context,
 void read_curves(CaseContext& context, const toml::table& root,
                  case_data::Case& result);
 
+/// How a copy is turned and moved: `rotate` about `axis` through `about`, then
+/// `move`.
+void read_motion(CaseContext& context, const CaseTable& table,
+                 case_data::CurveEntry& curve);
+
 /// A curve of kind "file": its points, or the curve of STEP edges.
 void read_curve_file(CaseContext& context, const CaseTable& table,
                      case_data::Case& result, case_data::CurveEntry& curve);
+
+/// The curve of edges of a STEP file that close, by names or numbers; problems
+/// are those of the key `at`. False where it is none, which has been noted.
+bool read_step_loop(CaseContext& context, const CaseTable& table,
+                    const std::string& path,
+                    const std::vector<std::string>& edges, const char* at,
+                    case_data::Case& result, case_data::CurveEntry& curve);
 
 /// What the points of a csv file make.
 const std::vector<case_data::Named<case_data::CurveKind>>& point_curves();

@@ -10,6 +10,7 @@
 #include "cad/solid/mesh_parts.h"
 #include "cad/step/step_writer.h"
 #include "core/error.h"
+#include "evolve/films/solid_frame.h"
 #include "evolve/frozen/film_model.h"
 #include "pipeline/results/rim_pieces.h"
 
@@ -79,6 +80,10 @@ std::size_t plane_count(const SurfaceMesh& mesh, int label) {
 bool is_flat(const films::CapSpec& cap, const films::FilmSystem& system,
              const SurfaceMesh& mesh) {
   const int label = mesh.label_of(cap.name);
+  if (cap.solid >= 0) {
+    return std::holds_alternative<ExactPlane>(
+        system.solids[cap.solid].shape->faces[cap.face].surface);
+  }
   if ((cap.inner.empty() && !cap.start && !cap.ruled) || label < 0) {
     return true;
   }
@@ -136,6 +141,22 @@ films::FilmSystem for_smooth_films(films::FilmSystem system,
     }
   }
   return system;
+}
+
+/// Faces of STEP solids where the design has them.
+std::vector<solid::ExactFaces> exact_faces_of(const films::FilmSystem& system) {
+  std::vector<solid::ExactFaces> result;
+  for (std::size_t s = 0; s < system.solids.size(); ++s) {
+    solid::ExactFaces& exact = result.emplace_back();
+    exact.shape = films::shape_at(system.solids[s], system.curves);
+    for (const films::CapSpec& cap : system.caps) {
+      if (cap.solid == static_cast<int>(s)) {
+        exact.faces.push_back(cap.face);
+        exact.names.push_back(cap.name);
+      }
+    }
+  }
+  return result;
 }
 
 frozen::FilmModel settled(const films::FilmSystem& system, double edge) {
@@ -206,8 +227,13 @@ void export_step(const std::filesystem::path& file,
   }
   model = settled(for_smooth_films(system, mesh), options.edge);
   mesh = model.boundary(model.reference().points);
-  solid::FilmSolidInput input{mesh, rims_of(system, model), {}, options.edge};
+  solid::FilmSolidInput input{
+      mesh, rims_of(system, model), {}, {}, options.edge};
   for (const films::CapSpec& cap : system.caps) {
+    if (cap.solid >= 0) {
+      input.exact.push_back(cap.name);
+      continue;
+    }
     if (is_flat(cap, system, mesh)) {
       input.caps.push_back(cap.name);
     }
@@ -215,7 +241,8 @@ void export_step(const std::filesystem::path& file,
       input.creased.push_back(cap.name);
     }
   }
-  const solid::FilmSolid solid = solid::film_solid(input);
+  solid::FilmSolid solid = solid::film_solid(input);
+  solid.brep.exact = exact_faces_of(system);
   tell(options, solid.report, step::write_step(file, solid.brep, names));
 }
 
