@@ -111,7 +111,8 @@ void ShapeReader::require_one_solid() const {
                  : "close its faces to a solid in its CAD program"));
 }
 
-/// Every edge but those without length is used twice.
+/// Every edge of a face but those without length is used twice; a file may have
+/// others.
 void ShapeReader::require_closed() const {
   std::vector<int> uses(shape_.edges.size(), 0);
   for (const ExactFace& face : shape_.faces) {
@@ -123,7 +124,7 @@ void ShapeReader::require_closed() const {
   }
   for (std::size_t k = 0; k < uses.size(); ++k) {
     const auto number = static_cast<int>(k) + 1;
-    if (uses[k] == 2 || BRep_Tool::Degenerated(TopoDS::Edge(edges_(number)))) {
+    if (uses[k] == 2 || uses[k] == 0 || BRep_Tool::Degenerated(TopoDS::Edge(edges_(number)))) {
       continue;
     }
     const Vec3& at = shape_.vertices[shape_.edges[k].from];

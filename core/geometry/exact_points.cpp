@@ -142,11 +142,9 @@ struct PointOnSurface {
 double seek_foot(const ExactSplineSurface& s, const Vec3& at, Vec2& place) {
   const Vec2 low(s.knots_a.front(), s.knots_b.front());
   const Vec2 high(s.knots_a.back(), s.knots_b.back());
-  double distance = std::numeric_limits<double>::infinity();
   for (int step = 0; step < kFootSteps; ++step) {
     const SurfaceJet jet = jet_of(s, place);
     const Vec3 left = at - jet.point;
-    distance = left.norm();
     Eigen::Matrix2d normal;
     normal << jet.by_a.dot(jet.by_a), jet.by_a.dot(jet.by_b),
         jet.by_a.dot(jet.by_b), jet.by_b.dot(jet.by_b);

@@ -188,7 +188,7 @@ void read_rim(CaseContext& context, const CaseTable& table,
 }
 
 /// "face_7: plane about (1, 2, 3)".
-std::string described(const ExactShape& shape, const ExactFace& face) {
+std::string face_text(const ExactShape& shape, const ExactFace& face) {
   static constexpr const char* kKinds[] = {"plane",  "cylinder", "cone",
                                            "sphere", "torus",    "splines"};
   Vec3 sum = Vec3::Zero();
@@ -218,7 +218,7 @@ void refuse_face(CaseContext& context, const CaseTable& table,
       known.emplace_back("...");
       break;
     }
-    known.push_back(described(shape, other));
+    known.push_back(face_text(shape, other));
   }
   context.problems.add(
       table.line("open"),
