@@ -18,8 +18,9 @@ constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr int kEdgeSamples = 128;    // of an edge, for its length
 constexpr int kSurfaceSamples = 24;  // of a spline surface, each way
 constexpr int kFootSteps = 40;
-constexpr double kFoot = 1e-13;   // of a step, to the parameters' range
-constexpr double kIsFoot = 1e-9;  // cosine between what is left and tangents
+constexpr double kFoot = 1e-13;     // of a step, to the parameters' range
+constexpr double kNearFoot = 1e-6;  // [size of the surface]
+constexpr double kIsFoot = 1e-9;    // cosine between what is left and tangents
 
 double beside(double angle, double near) {
   return angle - kTurn * std::round((angle - near) / kTurn);
@@ -226,9 +227,11 @@ struct PlaceOnSurface {
     const SurfaceJet jet = jet_of(s, place);
     const Vec3 left = at - jet.point;
     const double size = jet.by_a.norm() + jet.by_b.norm();
+    // At a border a foot need not be square; what is near enough is one.
     const bool foot =
+        distance <= kNearFoot * size ||
         std::abs(left.dot(jet.by_a)) + std::abs(left.dot(jet.by_b)) <=
-        kIsFoot * size * (distance + kIsFoot * size);
+            kIsFoot * size * distance;
     if (foot) {
       return place;
     }
