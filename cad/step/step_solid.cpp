@@ -124,7 +124,8 @@ void ShapeReader::require_closed() const {
   }
   for (std::size_t k = 0; k < uses.size(); ++k) {
     const auto number = static_cast<int>(k) + 1;
-    if (uses[k] == 2 || uses[k] == 0 || BRep_Tool::Degenerated(TopoDS::Edge(edges_(number)))) {
+    if (uses[k] == 2 || uses[k] == 0 ||
+        BRep_Tool::Degenerated(TopoDS::Edge(edges_(number)))) {
       continue;
     }
     const Vec3& at = shape_.vertices[shape_.edges[k].from];

@@ -23,7 +23,7 @@ namespace {
 constexpr double kWholeTurn = 2.0 * std::numbers::pi;
 constexpr double kLeastPieces = 12.0;  // of a turn, or of a closed rim
 constexpr double kOffEdge = 1e-3;      // a rim off its edges [its size]
-constexpr double kOneCut = 1e-7;      // parameters that are one
+constexpr double kOneCut = 1e-7;       // parameters that are one
 
 double upward(double from, double to) {
   const double way = to - from;
