@@ -123,7 +123,7 @@ ExactCurve curve_of(const Json& json) {
   return spline;
 }
 
-ExactSurface surface_of(const Json& json) {
+ExactSurface surface_from(const Json& json) {
   const auto number = [&](const char* key) {
     return json.at(key).get<double>();
   };
@@ -225,7 +225,7 @@ ExactShape shape_of(const Json& json) {
   for (const Json& face : json.at("faces")) {
     ExactFace& made = shape.faces.emplace_back();
     made.name = face.at("name").get<std::string>();
-    made.surface = surface_of(face);
+    made.surface = surface_from(face);
     made.outward = face.at("outward").get<bool>();
     for (const Json& loop : face.at("loops")) {
       auto& uses = made.loops.emplace_back();
