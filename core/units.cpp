@@ -190,7 +190,9 @@ class Database {
       return {nullptr, &ut_free};
     }
     const UnitPowers powers = powers_in_force(*base);
-    if (powers == powers_of(Dimension::Rate) && base->angle == 0.0) {
+    const bool counts_turns = dimension == Dimension::Frequency;
+    if (powers == powers_of(Dimension::Rate) &&
+        (base->angle == 0.0) != counts_turns) {
       return {nullptr, &ut_free};  // turns or radians? "50 Hz" does not say
     }
     if (dimension && !(powers == powers_of(*dimension))) {

@@ -320,7 +320,7 @@ FeatureShapes block_shapes(const FeatureEntry& feature,
        {Face{"right", 0, 1.0}, Face{"left", 0, -1.0}, Face{"back", 1, 1.0},
         Face{"front", 1, -1.0}, Face{"top", 2, 1.0}, Face{"bottom", 2, -1.0}}) {
     const Vector1 middle = n.at + half[face.along] * face.sign;
-    const Vector1 u = half[(face.along + 1) % 3];
+    const Vector1& u = half[(face.along + 1) % 3];
     const Vector1 v = half[(face.along + 2) % 3] * face.sign;
     list.add_polygon(face.name, {middle - u - v, middle + u - v, middle + u + v,
                                  middle - u + v});

@@ -276,6 +276,13 @@ void ResponseErrors::add_composed() {
   for (std::size_t r = 0; r < input_.responses.size(); ++r) {
     const case_data::ResponseEntry& response = input_.responses[r];
     if (case_data::is_composed(response)) {
+      const std::vector<int> parts = case_data::responses_in(input_, response);
+      if (!std::all_of(parts.begin(), parts.end(), [&](int part) {
+            return std::isfinite(there[part]);
+          })) {  // nothing is known of a part
+        error(r) = std::numeric_limits<double>::quiet_NaN();
+        continue;
+      }
       const VectorX& design = fields_.inputs.design;
       error(r) =
           case_data::composed_value(input_, response, design,

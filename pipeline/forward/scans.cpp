@@ -7,8 +7,8 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
-#include "pipeline/case_data/content_hash.h"
 #include "pipeline/case_data/scan_path.h"
+#include "pipeline/files/content_hash.h"
 #include "pipeline/files/part_file.h"
 
 namespace meniscus::forward {
@@ -23,7 +23,7 @@ std::shared_ptr<const scan::Scan> read_scan(
                                     return file.path == response.scan;
                                   });
   if (known != input.files.end() &&
-      known->text != case_data::content_hash(read_file(path))) {
+      known->text != files::content_hash(read_file(path))) {
     throw InvalidInput(fmt::format(
         "{}: '{}' has changed since the case was read; run it again",
         case_data::place(input, response.line), path.string()));

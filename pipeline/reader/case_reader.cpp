@@ -8,7 +8,7 @@
 
 #include "core/error.h"
 #include "pipeline/case_data/case_checks.h"
-#include "pipeline/case_data/content_hash.h"
+#include "pipeline/files/content_hash.h"
 #include "pipeline/reader/case_reader_content.h"
 #include "pipeline/reader/case_reader_overrides.h"
 #include "pipeline/reader/case_reader_tables.h"
@@ -48,9 +48,9 @@ void read_content(const std::string& text, case_data::CaseProblems& problems,
     for (const case_data::CaseFile& file : result.files) {
       files += fmt::format("file {}:{}", file.text.size(), file.text);
     }
-    result.hash = case_data::content_hash(canonical_text(root) + files);
+    result.hash = files::content_hash(canonical_text(root) + files);
     result.answer_hash =
-        case_data::content_hash(canonical_answer_text(root) + files);
+        files::content_hash(canonical_answer_text(root) + files);
   } catch (const toml::parse_error& error) {
     const std::string_view reason = error.description();
     // What it says of a line's end within a string.

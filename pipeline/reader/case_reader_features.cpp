@@ -1,5 +1,4 @@
 /// Solids that films grow from: bosses, flanges, lugs and blocks.
-#include "pipeline/reader/case_reader_features.h"
 
 #include <algorithm>
 
@@ -7,6 +6,7 @@
 
 #include "pipeline/case_data/case_checks.h"
 #include "pipeline/case_data/feature_shapes.h"
+#include "pipeline/reader/case_reader_tables.h"
 
 namespace meniscus::reader {
 
@@ -162,6 +162,17 @@ std::vector<std::string> names_of_curves(const case_data::Case& result) {
   return names;
 }
 
+/// Null for no such one.
+const case_data::FeatureEntry* feature_named(const case_data::Case& input,
+                                             const std::string& name) {
+  for (const case_data::FeatureEntry& feature : input.features) {
+    if (feature.name == name) {
+      return &feature;
+    }
+  }
+  return nullptr;
+}
+
 /// Its edges, among the case's curves.
 void add_curves(const case_data::FeatureEntry& feature, int index,
                 case_data::Case& result) {
@@ -255,11 +266,9 @@ void read_features(CaseContext& context, const std::vector<CaseTable>& solids,
 }
 
 void add_feature_faces(const std::string& name, case_data::Case& result) {
-  const auto feature = std::find_if(
-      result.features.begin(), result.features.end(),
-      [&](const case_data::FeatureEntry& f) { return f.name == name; });
-  for (films::CapSpec& face : case_data::feature_shapes(*feature, {}).faces) {
-    result.caps.push_back({.spec = std::move(face), .line = feature->line});
+  const case_data::FeatureEntry& feature = *feature_named(result, name);
+  for (films::CapSpec& face : case_data::feature_shapes(feature, {}).faces) {
+    result.caps.push_back({.spec = std::move(face), .line = feature.line});
   }
 }
 
@@ -267,9 +276,6 @@ std::vector<std::string> with_feature_faces(
     const case_data::Case& input, const std::vector<std::string>& names) {
   std::vector<std::string> result;
   for (const std::string& name : names) {
-    const auto feature = std::find_if(
-        input.features.begin(), input.features.end(),
-        [&](const case_data::FeatureEntry& f) { return f.name == name; });
     const auto solid =
         std::find_if(input.step_solids.begin(), input.step_solids.end(),
                      [&](const case_data::StepSolidEntry& s) {
@@ -281,7 +287,8 @@ std::vector<std::string> with_feature_faces(
       }
       continue;
     }
-    if (feature == input.features.end()) {
+    const case_data::FeatureEntry* feature = feature_named(input, name);
+    if (feature == nullptr) {
       result.push_back(name);
       continue;
     }

@@ -9,9 +9,9 @@
 
 #include "core/atomic_file.h"
 #include "pipeline/case_data/case_checks.h"
-#include "pipeline/case_data/content_hash.h"
 #include "pipeline/case_data/response_kinds.h"
 #include "pipeline/case_data/scan_path.h"
+#include "pipeline/files/content_hash.h"
 
 namespace meniscus::reader {
 
@@ -178,7 +178,7 @@ void keep_scan(CaseContext& context, const CaseTable& table,
                     table.path(), path.string()));
   } else {
     try {
-      result.files.push_back({scan, case_data::content_hash(read_file(path))});
+      result.files.push_back({scan, files::content_hash(read_file(path))});
     } catch (const IoError& error) {
       context.problems.add(table.line("scan"), error.what());
     }

@@ -56,6 +56,30 @@ const std::string* file_text(CaseContext& context, const CaseTable& table,
 /// The ending of a file's name in lower case: ".step".
 std::string ending_of(const std::string& path);
 
+/// Bosses, flanges, lugs and blocks: kinds of [solids.NAME] that are curves and
+/// faces.
+struct FeatureRow {
+  const char* name;
+  case_data::FeatureKind kind;
+  case_data::KindKeys keys;
+  std::string_view doc;
+};
+const std::vector<FeatureRow>& feature_kinds();
+
+bool is_feature(const CaseTable& table);
+
+/// Those among the solids, and their edges among the curves; after the curves,
+/// before the films.
+void read_features(CaseContext& context, const std::vector<CaseTable>& solids,
+                   case_data::Case& result);
+
+/// The faces of the feature of that name, which must exist, among the solids.
+void add_feature_faces(const std::string& name, case_data::Case& result);
+
+/// Each name of a feature or STEP solid replaced by those of its faces.
+std::vector<std::string> with_feature_faces(
+    const case_data::Case& input, const std::vector<std::string>& names);
+
 /// After curves and features; solids, of their own tables, after the films.
 void read_films(CaseContext& context, const toml::table& root,
                 case_data::Case& result);

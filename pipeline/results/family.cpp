@@ -16,7 +16,7 @@
 #include "core/json.h"
 #include "core/timer.h"
 #include "optimize/samples/family_tree.h"
-#include "pipeline/case_data/content_hash.h"
+#include "pipeline/files/content_hash.h"
 #include "pipeline/frames/film_frames.h"
 #include "pipeline/reader/family_members.h"
 #include "pipeline/results/export_part.h"
@@ -88,7 +88,7 @@ store::StudyStore open_store(const case_data::Case& member,
 /// Of all that a member's answer depends on but where it starts.
 std::string fingerprint_of(const FamilyOptions& options,
                            const case_data::Case& member) {
-  return case_data::content_hash(options.program_version + member.answer_hash);
+  return files::content_hash(options.program_version + member.answer_hash);
 }
 
 class FamilyRun {

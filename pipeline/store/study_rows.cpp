@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/json.h"
-#include "pipeline/case_data/content_hash.h"
+#include "pipeline/files/content_hash.h"
 
 namespace meniscus::store {
 
@@ -187,7 +187,7 @@ std::string checksum_of(std::initializer_list<std::string_view> parts) {
     all += fmt::format("{}:", part.size());
     all += part;
   }
-  return case_data::content_hash(all);
+  return files::content_hash(all);
 }
 
 std::string key_of(const std::string& case_hash, const std::string& model,

@@ -207,6 +207,28 @@ std::vector<loads::LoadCase> on_springs(const Part& part) {
   return {components, clamped, oblique, again};
 }
 
+/// Of each step of the deck CalculiX's displacements and ours.
+void expect_same(const TetMesh& mesh, io::CalculixDeck deck,
+                 const std::vector<loads::LoadCase>& cases,
+                 const std::string& name) {
+  deck.output = io::DeckOutput::Print;
+  const auto theirs = run_calculix(io::calculix_deck(mesh, deck),
+                                   static_cast<int>(mesh.nodes.size()));
+  ASSERT_EQ(theirs.size(), cases.size());
+  for (std::size_t c = 0; c < cases.size(); ++c) {
+    // A model takes load cases that are held alike.
+    const elastic::ElasticModel model(mesh, {aluminium()}, {cases[c]},
+                                      {.tolerance = 1e-11});
+    ASSERT_FALSE(model.base_solution().failure)
+        << model.base_solution().failure->message;
+    const double apart = relative_difference(
+        model.base_solution().displacements[0], theirs[c].displacement);
+    EXPECT_LE(apart, kDisplacement) << name << " " << cases[c].name;
+    ::testing::Test::RecordProperty(name + cases[c].name,
+                                    fmt::format("{:.1e}", apart));
+  }
+}
+
 TEST(SpringsInCalculix, GiveTheSameDisplacementsInEveryStep) {
   if (!have_calculix()) {
     MENISCUS_NOT_HERE("ccx (Debian package calculix-ccx) is not installed");
@@ -215,24 +237,10 @@ TEST(SpringsInCalculix, GiveTheSameDisplacementsInEveryStep) {
     for (const int order : {1, 2}) {
       const TetMesh mesh = part.make(order);
       const std::vector<loads::LoadCase> cases = on_springs(part);
-      io::CalculixDeck deck =
+      const io::CalculixDeck deck =
           results::calculix_deck_of({aluminium()}, cases, mesh);
       EXPECT_EQ(deck.springs.size(), 7U);  // 3 + 1, 3 for two load cases
-      deck.output = io::DeckOutput::Print;
-      const auto theirs = run_calculix(io::calculix_deck(mesh, deck),
-                                       static_cast<int>(mesh.nodes.size()));
-      ASSERT_EQ(theirs.size(), cases.size());
-      for (std::size_t c = 0; c < cases.size(); ++c) {
-        // A model takes load cases that are held alike.
-        const elastic::ElasticModel model(mesh, {aluminium()}, {cases[c]},
-                                          {.tolerance = 1e-11});
-        const VectorX& u = model.base_solution().displacements[0];
-        const double apart = relative_difference(u, theirs[c].displacement);
-        EXPECT_LE(apart, kDisplacement)
-            << part.name << order << " " << cases[c].name;
-        RecordProperty(part.name + std::to_string(order) + cases[c].name,
-                       fmt::format("{:.1e}", apart));
-      }
+      expect_same(mesh, deck, cases, part.name + std::to_string(order));
     }
   }
 }
@@ -277,25 +285,10 @@ TEST(PinsInCalculix, GiveTheSameDisplacementsInEveryStep) {
     for (const int order : {1, 2}) {
       const TetMesh mesh = part.make(order);
       const std::vector<loads::LoadCase> cases = on_pins(part);
-      io::CalculixDeck deck =
+      const io::CalculixDeck deck =
           results::calculix_deck_of({aluminium()}, cases, mesh);
       EXPECT_EQ(deck.pins.size(), 1U);
-      deck.output = io::DeckOutput::Print;
-      const auto theirs = run_calculix(io::calculix_deck(mesh, deck),
-                                       static_cast<int>(mesh.nodes.size()));
-      ASSERT_EQ(theirs.size(), cases.size());
-      for (std::size_t c = 0; c < cases.size(); ++c) {
-        const elastic::ElasticModel model(mesh, {aluminium()}, {cases[c]},
-                                          {.tolerance = 1e-11});
-        ASSERT_FALSE(model.base_solution().failure)
-            << model.base_solution().failure->message;
-        const double apart = relative_difference(
-            model.base_solution().displacements[0], theirs[c].displacement);
-        EXPECT_LE(apart, kDisplacement)
-            << part.name << order << " " << cases[c].name;
-        RecordProperty(part.name + std::to_string(order) + cases[c].name,
-                       fmt::format("{:.1e}", apart));
-      }
+      expect_same(mesh, deck, cases, part.name + std::to_string(order));
     }
   }
 }

@@ -1,10 +1,10 @@
-#include "pipeline/case_data/content_hash.h"
+#include "pipeline/files/content_hash.h"
 
 #include <cstdint>
 
 #include <fmt/format.h>
 
-namespace meniscus::case_data {
+namespace meniscus::files {
 
 std::string content_hash(std::string_view text) {
   // Offset basis and prime of the 128-bit FNV-1a hash (Fowler, Noll, Vo).
@@ -20,4 +20,4 @@ std::string content_hash(std::string_view text) {
                      static_cast<std::uint64_t>(hash));
 }
 
-}  // namespace meniscus::case_data
+}  // namespace meniscus::files

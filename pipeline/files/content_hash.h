@@ -5,8 +5,8 @@
 #include <string>
 #include <string_view>
 
-namespace meniscus::case_data {
+namespace meniscus::files {
 
 std::string content_hash(std::string_view text);
 
-}  // namespace meniscus::case_data
+}  // namespace meniscus::files
