@@ -14,6 +14,7 @@
 #include <Geom_BSplineSurface.hxx>
 #include <Geom_RectangularTrimmedSurface.hxx>
 #include <Geom_TrimmedCurve.hxx>
+#include <TColStd_Array1OfInteger.hxx>
 #include <TColStd_Array1OfReal.hxx>
 #include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
@@ -136,11 +137,12 @@ void ShapeReader::require_closed() const {
   }
 }
 
-/// Knots with their multiplicities.
-std::vector<double> flat_knots(const TColStd_Array1OfReal& knots) {
+/// Knots as often as they count.
+std::vector<double> flat_knots(const TColStd_Array1OfReal& knots,
+                               const TColStd_Array1OfInteger& counts) {
   std::vector<double> result;
   for (int k = knots.Lower(); k <= knots.Upper(); ++k) {
-    result.push_back(knots(k));
+    result.insert(result.end(), static_cast<std::size_t>(counts(k)), knots(k));
   }
   return result;
 }
@@ -154,9 +156,7 @@ ExactSpline ShapeReader::spline_of(const BRepAdaptor_Curve& curve) const {
   spline->SetNotPeriodic();
   ExactSpline result;
   result.degree = spline->Degree();
-  TColStd_Array1OfReal knots(1, spline->NbPoles() + spline->Degree() + 1);
-  spline->KnotSequence(knots);
-  result.knots = flat_knots(knots);
+  result.knots = flat_knots(spline->Knots(), spline->Multiplicities());
   for (int k = 1; k <= spline->NbPoles(); ++k) {
     result.poles.push_back(to_point(spline->Pole(k)));
     result.weights.push_back(spline->Weight(k));
@@ -222,17 +222,20 @@ ExactSplineSurface ShapeReader::splines_of(const TopoDS_Face& face) const {
     spline = GeomConvert::SurfaceToBSplineSurface(
         new Geom_RectangularTrimmedSurface(whole, a, b, c, d));
   }
-  spline->SetUNotPeriodic();
-  spline->SetVNotPeriodic();
+  // SetUNotPeriodic of OpenCASCADE 7.6 leaves weights of 0.
+  if (spline->IsUPeriodic() || spline->IsVPeriodic()) {
+    double a = 0.0;
+    double b = 0.0;
+    double c = 0.0;
+    double d = 0.0;
+    spline->Bounds(a, b, c, d);
+    spline->Segment(a, b, c, d);
+  }
   ExactSplineSurface result;
   result.degree_a = spline->UDegree();
   result.degree_b = spline->VDegree();
-  TColStd_Array1OfReal a(1, spline->NbUPoles() + spline->UDegree() + 1);
-  TColStd_Array1OfReal b(1, spline->NbVPoles() + spline->VDegree() + 1);
-  spline->UKnotSequence(a);
-  spline->VKnotSequence(b);
-  result.knots_a = flat_knots(a);
-  result.knots_b = flat_knots(b);
+  result.knots_a = flat_knots(spline->UKnots(), spline->UMultiplicities());
+  result.knots_b = flat_knots(spline->VKnots(), spline->VMultiplicities());
   for (int i = 1; i <= spline->NbUPoles(); ++i) {
     for (int j = 1; j <= spline->NbVPoles(); ++j) {
       result.poles.push_back(to_point(spline->Pole(i, j)));
