@@ -240,6 +240,13 @@ struct PlaceOnSurface {
   }
 };
 
+/// Columns at right angles, along no axis and no diagonal.
+Mat3 askew() {
+  return (Eigen::AngleAxisd(0.7, Vec3(2, 3, 6) / 7.0) *
+          Eigen::AngleAxisd(0.4, Vec3::UnitX()))
+      .toRotationMatrix();
+}
+
 }  // namespace
 
 Vec3 point_on(const ExactCurve& curve, double t) {
@@ -321,6 +328,20 @@ std::vector<double> equal_pieces(const ExactEdge& edge, int pieces) {
   }
   result.push_back(edge.last);
   return result;
+}
+
+Points frame_points(const ExactShape& shape) {
+  Vec3 low = shape.vertices.at(0);
+  Vec3 high = low;
+  for (const Vec3& p : shape.vertices) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  const double size = 0.5 * (high - low).norm();
+  const Vec3 middle = 0.5 * (low + high);
+  const Mat3 ways = (size > 0.0 ? size : 1.0) * askew();
+  return {middle, middle + ways.col(0), middle + ways.col(1),
+          middle + ways.col(2)};
 }
 
 }  // namespace meniscus

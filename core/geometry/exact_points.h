@@ -28,4 +28,9 @@ Vec2 place_on(const ExactSurface& surface, const Vec3& at, const Vec2& near);
 /// Anywhere on it: for what has no place near.
 Vec2 place_on(const ExactSurface& surface, const Vec3& at);
 
+/// What tells where the shape is when it moves as a rigid one: its middle, and
+/// points about half its size away at right angles. Their directions are askew,
+/// so that no side of a face lies between two of them.
+Points frame_points(const ExactShape& shape);
+
 }  // namespace meniscus

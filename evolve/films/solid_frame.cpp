@@ -5,17 +5,11 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/geometry/exact_points.h"
 
 namespace meniscus::films {
 
 namespace {
-
-/// Columns at right angles, along no axis and no diagonal.
-Mat3 askew() {
-  return (Eigen::AngleAxisd(0.7, Vec3(2, 3, 6) / 7.0) *
-          Eigen::AngleAxisd(0.4, Vec3::UnitX()))
-      .toRotationMatrix();
-}
 
 struct Motion {
   Mat3 turn;
@@ -47,20 +41,6 @@ struct Motion {
 };
 
 }  // namespace
-
-Points frame_points(const ExactShape& shape) {
-  Vec3 low = shape.vertices.at(0);
-  Vec3 high = low;
-  for (const Vec3& p : shape.vertices) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-  const double size = 0.5 * (high - low).norm();
-  const Vec3 middle = 0.5 * (low + high);
-  const Mat3 ways = (size > 0.0 ? size : 1.0) * askew();
-  return {middle, middle + ways.col(0), middle + ways.col(1),
-          middle + ways.col(2)};
-}
 
 std::array<Vec3, 4> frame_at(const curves::CurveShape& frame) {
   std::array<Vec3, 4> result;

@@ -10,13 +10,8 @@
 
 namespace meniscus::films {
 
-/// In the solid's own coordinates: its middle, and points about half its size
-/// away at right angles. Their directions are askew, so that no side of a face
-/// lies between two of them.
-Points frame_points(const ExactShape& shape);
-
-/// The frame's points where `frame`, a polygon of four or a copy of one, has
-/// them.
+/// The points (frame_points()) where `frame`, a polygon of four or a copy of
+/// one, has them.
 std::array<Vec3, 4> frame_at(const curves::CurveShape& frame);
 
 /// The parameter of the frame's k-th point.

@@ -7,7 +7,6 @@
 
 #include "core/error.h"
 #include "pipeline/case_data/case_checks.h"
-#include "pipeline/reader/case_reader_solids.h"
 #include "pipeline/reader/case_reader_tables.h"
 #include "pipeline/reader/facet_file.h"
 

@@ -7,7 +7,6 @@
 
 #include "pipeline/case_data/case_checks.h"
 #include "pipeline/case_data/case_curves.h"
-#include "pipeline/reader/case_reader_solids.h"
 #include "pipeline/reader/case_reader_tables.h"
 
 namespace meniscus::reader {

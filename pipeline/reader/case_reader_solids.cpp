@@ -1,5 +1,4 @@
-#include "pipeline/reader/case_reader_solids.h"
-
+/// Solids of kind "step": from the file to faces, rims and their curves.
 #include <algorithm>
 #include <filesystem>
 #include <memory>
@@ -12,8 +11,8 @@
 #include "cad/step/step_solid.h"
 #include "core/error.h"
 #include "core/geometry/exact_points.h"
-#include "evolve/films/solid_frame.h"
 #include "pipeline/case_data/case_checks.h"
+#include "pipeline/reader/case_reader_tables.h"
 
 namespace meniscus::reader {
 
@@ -150,7 +149,7 @@ void add_frame(const CaseTable& table, const MotionEntry& motion,
   case_data::CurveEntry frame{.name = solid.spec.frame,
                               .kind = case_data::CurveKind::Polygon,
                               .line = table.line()};
-  frame.fixed_points = films::frame_points(*solid.spec.shape);
+  frame.fixed_points = frame_points(*solid.spec.shape);
   add_curve(motion, std::move(frame), result);
 }
 

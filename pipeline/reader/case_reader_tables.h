@@ -80,6 +80,17 @@ void add_feature_faces(const std::string& name, case_data::Case& result);
 std::vector<std::string> with_feature_faces(
     const case_data::Case& input, const std::vector<std::string>& names);
 
+/// Solids of kind "step": the curves of their rims; after the curves, before
+/// the films.
+bool is_step_solid(const CaseTable& table);
+void read_step_solids(CaseContext& context,
+                      const std::vector<CaseTable>& solids,
+                      case_data::Case& result);
+
+/// The faces of the solid of that name among the solids; none where it could
+/// not be read.
+void add_step_faces(const std::string& name, case_data::Case& result);
+
 /// After curves and features; solids, of their own tables, after the films.
 void read_films(CaseContext& context, const toml::table& root,
                 case_data::Case& result);
@@ -109,10 +120,6 @@ loads::Surfaces surfaces_on(CaseContext& context, const CaseTable& table,
 /// Supports and loads; after the geometry.
 void read_load_cases(CaseContext& context, const toml::table& root,
                      case_data::Case& result);
-
-/// What stress figures leave out, from [analysis]; after the geometry.
-void read_zones(CaseContext& context, const CaseTable& table,
-                case_data::Case& result);
 
 /// The load case that `key` names; the first when left out or wrong.
 int index_of_load_case(CaseContext& context, const CaseTable& table,

@@ -13,7 +13,7 @@ from step_test import gmsh_volume, surface_kinds
 
 # Ten-node elements with mid-sides on the exact faces: fourth order in the edge,
 # here about a third of the radii.
-MOST_OFF = 3e-4  # of OpenCASCADE's volume
+MOST_OFF = 4e-4  # of OpenCASCADE's volume
 MOST_FUSED = 1e-6  # of the volume that the writer has measured
 MOST_FILM_OFF = 1e-3  # of a volume beside films of flat facets
 
@@ -113,7 +113,7 @@ class StepSolids(ProgramTest):
         out = self.folder / "out"
         self.expect(self.call("run", case, "--out", out, "--no-pictures",
                               "--no-report", "--quiet"), 0)
-        return self.result(out)["responses"]["volume"]["value"]
+        return self.result(out)["responses"]["volume"]
 
     def edge_at(self, kind, length, *place):
         """Its number, as check tells it."""
@@ -169,7 +169,7 @@ curves = ["plate/edge_{edge}", "head"]
 [solids.cap]
 kind = "cap"
 curve = "head"
-""", '"plate", "skin", "cap"', f"volume = {own + film:.17g}", 3.0)
+""", '"plate", "skin", "cap"', f"volume = {own + film:.17g}", 2.0)
         self.assertLess(abs(self.volume_of(case) / (own + film) - 1.0),
                         MOST_FILM_OFF)
         # His faces as they were, but the one that the film covers.
@@ -189,10 +189,7 @@ curve = "head"
 
     def test_gradient_by_a_motion(self):
         """Film and load between a plate that stands and one that moves."""
-        self.make("""Cylinder(1) = {0, 0, 0, 0, 0, 6, 12};
-Cylinder(2) = {0, 0, -1, 0, 0, 9, 3};
-BooleanDifference(3) = { Volume{1}; Delete; }{ Volume{2}; Delete; };
-""")
+        self.make("Cylinder(1) = {0, 0, 0, 0, 0, 6, 12};")
         edge = self.edge_at("circle", 24 * math.pi, 0, 0, 6)
         top = self.face_at("plane", 0, 0, 6)
         case = self.write(f'rims = [{edge}]\nopen = ["{top}"]', f"""
@@ -238,7 +235,7 @@ direction = [0, 0.3, 1]
         straight = self.edge_at("line", 6, 0, 0, 3)
         self.refuse(self.write(f"rims = [{straight}]"), "^rims",
                     "do not close")
-        self.refuse(self.write('open = ["face_1"]'), "^enclosed_by|^kind",
+        self.refuse(self.write('open = ["face_2"]'), "^enclosed_by",
                     "not closed")
 
     def test_two_solids_in_one_file(self):
