@@ -1,10 +1,14 @@
 #include "cad/step/exact_faces.h"
 
+#include <array>
+#include <cmath>
+
+#include <BRepBndLib.hxx>
 #include <BRepBuilderAPI_Sewing.hxx>
-#include <BRepGProp.hxx>
 #include <BRepLib.hxx>
 #include <BRep_Builder.hxx>
-#include <GProp_GProps.hxx>
+#include <BRep_Tool.hxx>
+#include <Bnd_Box.hxx>
 #include <Geom_BSplineCurve.hxx>
 #include <Geom_BSplineSurface.hxx>
 #include <Geom_Circle.hxx>
@@ -16,7 +20,7 @@
 #include <Geom_SphericalSurface.hxx>
 #include <Geom_ToroidalSurface.hxx>
 #include <ShapeFix_Face.hxx>
-#include <ShapeFix_Wire.hxx>
+#include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Edge.hxx>
@@ -33,8 +37,10 @@ namespace meniscus::step {
 
 namespace {
 
-constexpr double kFine = 1e-7;   // OpenCASCADE's own [mm]
-constexpr double kSewn = 1e-4;   // edges that are one [mm]
+constexpr double kFine = 1e-7;  // OpenCASCADE's own [mm]
+// Edges that are one, at most so far apart [the part's size]: curves through
+// the edges of a file miss them by so much (pipeline/files/step_curve.h).
+constexpr std::array kSewn = {2e-6, 2e-5, 2e-4};
 constexpr double kEqual = 1e-9;  // a circle's radii alike, relative
 
 gp_Pnt scaled_point(const Vec3& p, double scale) {
@@ -122,6 +128,35 @@ struct SurfaceMaker {
   }
 };
 
+[[noreturn]] void refuse_free(const BRepBuilderAPI_Sewing& sewing,
+                              double scale) {
+  const gp_Pnt at =
+      BRep_Tool::Pnt(TopExp::FirstVertex(TopoDS::Edge(sewing.FreeEdge(1))));
+  throw MeshError(fmt::format(
+      "the films do not end at the solid's edges: {} edges of faces are free, "
+      "the first from ({:.5g}, {:.5g}, {:.5g})",
+      sewing.NbFreeEdges(), at.X() / scale, at.Y() / scale, at.Z() / scale));
+}
+
+/// A single face is a shell of its own.
+TopoDS_Solid solid_of(const TopoDS_Shape& sewn) {
+  BRep_Builder builder;
+  TopoDS_Solid solid;
+  builder.MakeSolid(solid);
+  if (sewn.ShapeType() == TopAbs_FACE) {
+    TopoDS_Shell shell;
+    builder.MakeShell(shell);
+    builder.Add(shell, sewn);
+    shell.Closed(true);
+    builder.Add(solid, shell);
+  }
+  for (TopExp_Explorer at(sewn, TopAbs_SHELL); at.More(); at.Next()) {
+    builder.Add(solid, at.Current());
+  }
+  BRepLib::OrientClosedSolid(solid);
+  return solid;
+}
+
 }  // namespace
 
 std::vector<TopoDS_Face> exact_faces(const solid::ExactFaces& from,
@@ -167,17 +202,25 @@ std::vector<TopoDS_Face> exact_faces(const solid::ExactFaces& from,
   return faces;
 }
 
-TopoDS_Shape sewn_solid(std::vector<TopoDS_Face>& faces) {
-  BRepBuilderAPI_Sewing sewing(kSewn);
+TopoDS_Shape sewn_solid(std::vector<TopoDS_Face>& faces, double scale) {
+  Bnd_Box box;
+  for (const TopoDS_Face& face : faces) {
+    BRepBndLib::Add(face, box);
+  }
+  const double size = std::sqrt(box.SquareExtent());
+  BRepBuilderAPI_Sewing sewing;
   for (const TopoDS_Face& face : faces) {
     sewing.Add(face);
   }
-  sewing.Perform();
+  for (const double share : kSewn) {
+    sewing.SetTolerance(share * size);
+    sewing.Perform();
+    if (sewing.NbFreeEdges() == 0) {
+      break;
+    }
+  }
   if (sewing.NbFreeEdges() > 0) {
-    throw MeshError(fmt::format(
-        "the film's faces and those of the solid are not closed: {} edges are "
-        "free after sewing",
-        sewing.NbFreeEdges()));
+    refuse_free(sewing, scale);
   }
   for (TopoDS_Face& face : faces) {
     const TopoDS_Shape now = sewing.Modified(face);
@@ -185,15 +228,7 @@ TopoDS_Shape sewn_solid(std::vector<TopoDS_Face>& faces) {
       face = TopoDS::Face(now);
     }
   }
-  BRep_Builder builder;
-  TopoDS_Solid solid;
-  builder.MakeSolid(solid);
-  for (TopExp_Explorer at(sewing.SewedShape(), TopAbs_SHELL); at.More();
-       at.Next()) {
-    builder.Add(solid, at.Current());
-  }
-  BRepLib::OrientClosedSolid(solid);
-  return solid;
+  return solid_of(sewing.SewedShape());
 }
 
 }  // namespace meniscus::step

@@ -17,8 +17,8 @@ std::vector<TopoDS_Face> exact_faces(const solid::ExactFaces& from,
                                      double scale);
 
 /// The faces joined where edges lie on each other, cut where one's vertex lies
-/// on another's edge; `faces` become those of the solid. Throws MeshError,
-/// naming a face, where edges stay free.
-TopoDS_Shape sewn_solid(std::vector<TopoDS_Face>& faces);
+/// on another's edge; `faces` become those of the solid. Throws MeshError where
+/// edges stay free; `scale` is for the place that it names.
+TopoDS_Shape sewn_solid(std::vector<TopoDS_Face>& faces, double scale);
 
 }  // namespace meniscus::step

@@ -320,7 +320,7 @@ StepShape ShapeBuilder::build_sewn() {
     result.names.insert(result.names.end(), exact.names.begin(),
                         exact.names.end());
   }
-  result.solid = sewn_solid(result.faces);
+  result.solid = sewn_solid(result.faces, scale_);
   for (TopExp_Explorer at(result.solid, TopAbs_SHELL); at.More(); at.Next()) {
     result.shells += 1;
   }

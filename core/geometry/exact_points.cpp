@@ -20,6 +20,8 @@ constexpr int kSurfaceSamples = 24;  // of a spline surface, each way
 constexpr int kFootSteps = 40;
 constexpr double kFoot = 1e-13;     // of a step, to the parameters' range
 constexpr double kNearFoot = 1e-6;  // [size of the surface]
+constexpr double kOnAxis = 1e-9;    // of the distance from the origin
+constexpr double kRounded = 1e-14;  // coordinates, relative
 constexpr double kIsFoot = 1e-9;    // cosine between what is left and tangents
 
 double beside(double angle, double near) {
@@ -189,7 +191,12 @@ struct PlaceOnSurface {
 
   double angle_of(const ExactFrame& f) const {
     const Vec3 r = at - f.origin;
-    const double angle = std::atan2(r.dot(f.y), r.dot(f.x));
+    const Vec2 across(r.dot(f.x), r.dot(f.y));
+    if (near != nullptr &&
+        across.norm() <= kOnAxis * r.norm() + kRounded * at.norm()) {
+      return (*near)[0];  // a tip or a pole: any angle
+    }
+    const double angle = std::atan2(across[1], across[0]);
     return near != nullptr ? beside(angle, (*near)[0]) : angle;
   }
   /// Distance from the axis, and along it.

@@ -9,11 +9,12 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/geometry/edge_key.h"
 #include "core/geometry/exact_points.h"
 #include "evolve/curves/curve_place.h"
 #include "evolve/films/solid_frame.h"
 #include "evolve/start/cap_faces.h"
-#include "evolve/start/disk_fill.h"
+#include "evolve/start/double_edges.h"
 #include "evolve/start/unrolled.h"
 
 namespace meniscus::start {
@@ -307,6 +308,12 @@ void SolidStart::add_edges(const RimIds& rim, films::FilmComplex& complex) {
         add_edge(s, e, complex);
       }
     }
+    for (const int e : used) {
+      const std::vector<int>& ids = solids_[s].ids[e];
+      for (std::size_t k = 1; k < ids.size(); ++k) {
+        taken_.insert(edge_key(ids[k - 1], ids[k]));
+      }
+    }
   }
 }
 
@@ -340,7 +347,7 @@ std::vector<SolidStart::FaceLoop> SolidStart::loops_of(
 
 void SolidStart::fill(const films::CapSpec& cap,
                       const std::vector<FaceLoop>& loops, int label,
-                      films::FilmComplex& complex) const {
+                      films::FilmComplex& complex) {
   const int number = complex.surfaces[label].face;
   const ExactSurface& surface = complex.solid_faces[number].face().surface;
   std::vector<std::vector<Vec2>> places;
@@ -358,7 +365,9 @@ void SolidStart::fill(const films::CapSpec& cap,
       rim.push_back(unrolled.to_plane(place));
     }
   }
-  const SurfaceMesh filling = fill_face(rims, edge_, true, cap.name);
+  SurfaceMesh filling =
+      fill_face(rims, std::min(edge_, unrolled.longest_edge()), true, cap.name);
+  cut_doubles(corner, taken_, filling);
   for (std::size_t k = corner.size(); k < filling.points.size(); ++k) {
     const Vec2 place = unrolled.from_plane(filling.points[k]);
     corner.push_back(static_cast<int>(complex.mesh.points.size()));
@@ -375,7 +384,7 @@ void SolidStart::fill(const films::CapSpec& cap,
 }
 
 void SolidStart::add_face(const films::CapSpec& cap, int label,
-                          films::FilmComplex& complex) const {
+                          films::FilmComplex& complex) {
   complex.surfaces[label].face = static_cast<int>(complex.solid_faces.size());
   complex.solid_faces.push_back(
       {solids_[cap.solid].shape, cap.face, solids_[cap.solid].frame});

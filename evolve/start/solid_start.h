@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -33,7 +34,7 @@ class SolidStart {
   /// The facets of a face, labelled; its surface is complex.surfaces[label].
   /// Throws InvalidInput, naming it, for one that cannot be filled.
   void add_face(const films::CapSpec& cap, int label,
-                films::FilmComplex& complex) const;
+                films::FilmComplex& complex);
 
  private:
   /// How an edge lies on a rim.
@@ -76,13 +77,14 @@ class SolidStart {
   std::vector<FaceLoop> loops_of(const films::CapSpec& cap,
                                  const Points& points) const;
   void fill(const films::CapSpec& cap, const std::vector<FaceLoop>& loops,
-            int label, films::FilmComplex& complex) const;
+            int label, films::FilmComplex& complex);
 
   const films::FilmSystem& system_;
   double edge_;
   std::map<int, std::vector<double>> cuts_;
   std::map<int, std::size_t> cut_counts_;
   std::vector<Solid> solids_;
+  std::set<Edge> taken_;  // between vertices on edges
 };
 
 }  // namespace meniscus::start

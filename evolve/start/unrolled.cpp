@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include <Eigen/Geometry>
+
 #include "core/error.h"
 #include "core/geometry/exact_points.h"
 
@@ -12,7 +14,9 @@ namespace meniscus::start {
 namespace {
 
 constexpr double kQuarter = 0.5 * std::numbers::pi;
-constexpr double kAtPole = 1e-6;   // [rad] of latitude
+constexpr double kTwelfth = std::numbers::pi / 6.0;  // of a turn
+constexpr double kStraight = 1e-3;                   // [rad] in all
+constexpr double kAtPole = 1e-6;                     // [rad] of latitude
 constexpr int kLengthSteps = 64;   // of a line whose length is summed
 constexpr double kTouches = 1e-9;  // [rad] a plane's angle of a whole turn
 
@@ -49,12 +53,43 @@ double scale_along(const ExactSurface& surface, const Box& box, int axis) {
   return range > 0.0 && sum > 0.0 ? sum / range : 1.0;
 }
 
+/// Of the surface at a place, by differences; zero where it has none.
+Vec3 normal_at(const ExactSurface& surface, const Vec2& place,
+               const Vec2& size) {
+  constexpr double kStep = 1e-5;  // of the piece
+  const Vec2 a(kStep * size[0], 0.0);
+  const Vec2 b(0.0, kStep * size[1]);
+  return (point_on(surface, place + a) - point_on(surface, place - a))
+      .cross(point_on(surface, place + b) - point_on(surface, place - b))
+      .normalized();
+}
+
+/// Longest edge along `axis` through the middle of the box.
+double longest_along(const ExactSurface& surface, const Box& box, int axis) {
+  const Vec2 size = box.high - box.low;
+  Vec2 place = box.middle();
+  double turn = 0.0;
+  Vec3 last = Vec3::Zero();
+  for (int k = 0; k < kLengthSteps; ++k) {
+    place[axis] = box.low[axis] + size[axis] * (k + 0.5) / kLengthSteps;
+    const Vec3 normal = normal_at(surface, place, size);
+    turn +=
+        k == 0 ? 0.0 : std::atan2(last.cross(normal).norm(), last.dot(normal));
+    last = normal;
+  }
+  const double length = scale_along(surface, box, axis) * size[axis];
+  return turn > kStraight ? length * kTwelfth / turn
+                          : std::numeric_limits<double>::infinity();
+}
+
 }  // namespace
 
 Unrolled::Unrolled(const ExactSurface& surface,
                    const std::vector<std::vector<Vec2>>& around) {
   const Box box = box_of(around);
   zero_ = box.middle()[0];
+  longest_edge_ =
+      std::min(longest_along(surface, box, 0), longest_along(surface, box, 1));
   if (const auto* cone = std::get_if<ExactCone>(&surface)) {
     about_apex_ = true;
     apex_ = -cone->radius / std::sin(cone->angle);

@@ -1,6 +1,7 @@
 /// A piece of an exact surface laid into a plane.
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "core/geometry/exact_shape.h"
@@ -20,6 +21,10 @@ class Unrolled {
   Vec3 to_plane(const Vec2& place) const;  // z = 0
   Vec2 from_plane(const Vec3& at) const;
 
+  /// The longest edge by which normals turn by a twelfth of a turn at most
+  /// along the middle of the piece, either way; infinite where they do not.
+  double longest_edge() const { return longest_edge_; }
+
  private:
   bool about_apex_ = false;  // else to scale
   Vec2 scale_ = Vec2::Ones();
@@ -29,6 +34,7 @@ class Unrolled {
   double side_ = 1.0;
   double turn_ = 1.0;
   double zero_ = 0.0;
+  double longest_edge_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace meniscus::start
