@@ -105,11 +105,12 @@ void ShapeReader::require_one_solid() const {
     return;
   }
   throw InvalidInput(fmt::format(
-      "{}: holds {} solids and {} faces outside of them; expected one closed "
-      "solid: {}",
+      "{}: {} solids and {} faces outside of them; expected one closed solid: "
+      "{}",
       file_.path.string(), solids, std::max(0, faces_.Extent() - faces),
-      solids > 1 ? "write each into a file of its own"
-                 : "close its faces to a solid in its CAD program"));
+      solids > 1    ? "write each into a file of its own"
+      : solids == 1 ? "take the other faces out in its CAD program"
+                    : "close its faces to a solid in its CAD program"));
 }
 
 /// Every edge of a face but those without length is used twice; a file may have

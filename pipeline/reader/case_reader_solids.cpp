@@ -153,6 +153,17 @@ void add_frame(const CaseTable& table, const MotionEntry& motion,
   add_curve(motion, std::move(frame), result);
 }
 
+bool ends_at(const ExactFace& face, const std::vector<int>& edges) {
+  for (const auto& loop : face.loops) {
+    for (const ExactUse& use : loop) {
+      if (std::count(edges.begin(), edges.end(), use.edge) != 0) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
 void read_rim(CaseContext& context, const CaseTable& table,
               const std::string& path, const std::vector<std::string>& edges,
               const MotionEntry& motion, case_data::StepSolidEntry& solid,
@@ -164,6 +175,18 @@ void read_rim(CaseContext& context, const CaseTable& table,
   case_data::CurveEntry curve{.line = table.line("rims")};
   if (!read_step_loop(context, table, path, edges, "rims", result, curve)) {
     return;  // told, also of edges that are not there
+  }
+  for (const int edge : rim.edges) {
+    if (std::none_of(solid.spec.shape->faces.begin(),
+                     solid.spec.shape->faces.end(),
+                     [&](const ExactFace& f) { return ends_at(f, {edge}); })) {
+      context.problems.add(
+          table.line("rims"),
+          fmt::format("{}.rims: edge {} is of no face of the solid but a line "
+                      "beside it in the file; name one where faces meet",
+                      table.path(), edge + 1));
+      return;
+    }
   }
   const bool by_number =
       edges.front() == fmt::format("{}", rim.edges.front() + 1);
@@ -301,14 +324,7 @@ void add_step_faces(const std::string& name, case_data::Case& result) {
       cap.spec.solid = static_cast<int>(s);
       cap.spec.face = face;
       for (const films::SolidSpec::Rim& rim : solid.spec.rims) {
-        bool ends = false;
-        for (const auto& loop : solid.spec.shape->faces[face].loops) {
-          for (const ExactUse& use : loop) {
-            ends = ends || std::count(rim.edges.begin(), rim.edges.end(),
-                                      use.edge) != 0;
-          }
-        }
-        if (ends) {
+        if (ends_at(solid.spec.shape->faces[face], rim.edges)) {
           cap.spec.rims.push_back(rim.curve);
         }
       }

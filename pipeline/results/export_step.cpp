@@ -173,19 +173,32 @@ std::string number_of(int count, const char* what) {
   return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }
 
-void tell(const StepExport& options, const solid::FilmSolidReport& film,
+/// ", 7 faces of STEP solids"; empty: none.
+std::string faces_text(const solid::Brep& brep) {
+  std::size_t faces = 0;
+  for (const solid::ExactFaces& exact : brep.exact) {
+    faces += exact.faces.size();
+  }
+  return faces == 0 ? ""
+                    : fmt::format(", {} face{} of STEP solids", faces,
+                                  faces == 1 ? "" : "s");
+}
+
+void tell(const StepExport& options, const solid::FilmSolid& solid,
           const step::StepReport& step) {
+  const solid::FilmSolidReport& film = solid.report;
   Monitor& monitor =
       options.monitor != nullptr ? *options.monitor : silent_monitor();
   const std::string& unit = options.unit;
   monitor.log(
       Severity::Info,
-      fmt::format("{}, {}, {}, {}, {}; valid closed solid of {:.6g} {}3",
+      fmt::format("{}, {}, {}, {}, {}{}; valid closed solid of {:.6g} {}3",
                   number_of(film.patches, "B-spline face"),
                   number_of(film.planes, "plane"),
                   number_of(film.cylinders, "cylinder"),
                   number_of(film.cones, "cone"),
-                  number_of(film.spheres, "sphere"), step.volume, unit));
+                  number_of(film.spheres, "sphere"), faces_text(solid.brep),
+                  step.volume, unit));
   for (const solid::SimpleFace& face : film.simple) {
     monitor.log(
         Severity::Info,
@@ -243,7 +256,7 @@ void export_step(const std::filesystem::path& file,
   }
   solid::FilmSolid solid = solid::film_solid(input);
   solid.brep.exact = exact_faces_of(system);
-  tell(options, solid.report, step::write_step(file, solid.brep, names));
+  tell(options, solid, step::write_step(file, solid.brep, names));
 }
 
 }  // namespace meniscus::results
