@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -141,10 +142,18 @@ struct PointOnSurface {
   }
 };
 
+/// Of its parameters: knots before and behind hold no surface.
+std::pair<Vec2, Vec2> range_of(const ExactSplineSurface& s) {
+  const auto end = [](const std::vector<double>& knots, int degree) {
+    return knots[knots.size() - 1 - static_cast<std::size_t>(degree)];
+  };
+  return {{s.knots_a[s.degree_a], s.knots_b[s.degree_b]},
+          {end(s.knots_a, s.degree_a), end(s.knots_b, s.degree_b)}};
+}
+
 /// Gauss and Newton's steps from a place; how far it then is.
 double seek_foot(const ExactSplineSurface& s, const Vec3& at, Vec2& place) {
-  const Vec2 low(s.knots_a.front(), s.knots_b.front());
-  const Vec2 high(s.knots_a.back(), s.knots_b.back());
+  const auto [low, high] = range_of(s);
   for (int step = 0; step < kFootSteps; ++step) {
     const SurfaceJet jet = jet_of(s, place);
     const Vec3 left = at - jet.point;
@@ -167,8 +176,8 @@ double seek_foot(const ExactSplineSurface& s, const Vec3& at, Vec2& place) {
 }
 
 Vec2 search_foot(const ExactSplineSurface& s, const Vec3& at) {
-  const Vec2 low(s.knots_a.front(), s.knots_b.front());
-  const Vec2 size = Vec2(s.knots_a.back(), s.knots_b.back()) - low;
+  const auto [low, high] = range_of(s);
+  const Vec2 size = high - low;
   Vec2 best = low;
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i <= kSurfaceSamples; ++i) {

@@ -105,6 +105,12 @@ void check_spline(int degree, const std::vector<double>& knots,
           "a spline whose knots and poles do not fit");
 }
 
+void check_weights(const std::vector<double>& weights) {
+  require(std::all_of(weights.begin(), weights.end(),
+                      [](double w) { return w > 0.0; }),
+          "a weight that is not above 0");
+}
+
 ExactCurve curve_of(const Json& json) {
   if (json.contains("line")) {
     const Points p = points_of(json.at("line"));
@@ -120,29 +126,32 @@ ExactCurve curve_of(const Json& json) {
                      json.at("weights").get<std::vector<double>>()};
   check_spline(spline.degree, spline.knots, spline.poles.size());
   require(spline.weights.size() == spline.poles.size(), "too few weights");
+  check_weights(spline.weights);
   return spline;
 }
 
 ExactSurface surface_from(const Json& json) {
-  const auto number = [&](const char* key) {
-    return json.at(key).get<double>();
+  const auto above_zero = [&](const char* key) {
+    const auto value = json.at(key).get<double>();
+    require(value > 0.0, "a radius that is not above 0");
+    return value;
   };
   if (json.contains("plane")) {
     return ExactPlane{frame_of(json.at("plane"))};
   }
   if (json.contains("cylinder")) {
-    return ExactCylinder{frame_of(json.at("cylinder")), number("radius")};
+    return ExactCylinder{frame_of(json.at("cylinder")), above_zero("radius")};
   }
   if (json.contains("cone")) {
-    return ExactCone{frame_of(json.at("cone")), number("radius"),
-                     number("angle")};
+    return ExactCone{frame_of(json.at("cone")), json.at("radius").get<double>(),
+                     json.at("angle").get<double>()};
   }
   if (json.contains("sphere")) {
-    return ExactSphere{frame_of(json.at("sphere")), number("radius")};
+    return ExactSphere{frame_of(json.at("sphere")), above_zero("radius")};
   }
   if (json.contains("torus")) {
-    return ExactTorus{frame_of(json.at("torus")), number("major"),
-                      number("minor")};
+    return ExactTorus{frame_of(json.at("torus")), above_zero("major"),
+                      above_zero("minor")};
   }
   ExactSplineSurface s;
   s.degree_a = json.at("splines").at(0).get<int>();
@@ -161,6 +170,7 @@ ExactSurface surface_from(const Json& json) {
   check_spline(s.degree_b, s.knots_b, b);
   require(s.poles.size() == a * b && s.weights.size() == a * b,
           "a surface with too few poles");
+  check_weights(s.weights);
   return s;
 }
 

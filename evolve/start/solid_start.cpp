@@ -14,6 +14,7 @@
 #include "evolve/curves/curve_place.h"
 #include "evolve/films/solid_frame.h"
 #include "evolve/start/cap_faces.h"
+#include "evolve/start/disk_fill.h"
 #include "evolve/start/double_edges.h"
 #include "evolve/start/unrolled.h"
 
@@ -365,8 +366,9 @@ void SolidStart::fill(const films::CapSpec& cap,
       rim.push_back(unrolled.to_plane(place));
     }
   }
-  SurfaceMesh filling =
-      fill_face(rims, std::min(edge_, unrolled.longest_edge()), true, cap.name);
+  const double edge = std::min(edge_, unrolled.longest_edge());
+  require_room(polygon_area_vector(rims[0]).norm(), edge);
+  SurfaceMesh filling = fill_face(rims, edge, true, cap.name);
   cut_doubles(corner, taken_, filling);
   for (std::size_t k = corner.size(); k < filling.points.size(); ++k) {
     const Vec2 place = unrolled.from_plane(filling.points[k]);

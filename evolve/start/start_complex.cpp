@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "core/memory.h"
 #include "evolve/energy/fields.h"
 #include "evolve/energy/tension_field.h"
 #include "evolve/films/body_sides.h"
@@ -130,7 +129,6 @@ class StartBuilder {
   /// Before they are filled: their flat areas alone tell edges that are far too
   /// short.
   void require_room_for_caps() {
-    constexpr double kBytes = 1500.0;  // of a facet
     double area = 0.0;
     for (const films::CapSpec& cap : system_.caps) {
       if (!cap.start && !cap.ruled && cap.inner.empty() && cap.solid < 0) {
@@ -139,15 +137,7 @@ class StartBuilder {
         }
       }
     }
-    const double facets = area / (0.25 * std::sqrt(3.0) * edge_ * edge_);
-    const double held = available_memory() / kBytes;
-    if (facets > held) {
-      throw InvalidInput(fmt::format(
-          "the caps take about {:.2g} facets at edges of {:.4g}, and memory "
-          "holds {:.2g}; use longer edges, or look for a curve that is too "
-          "large",
-          facets, edge_, held));
-    }
+    require_room(area, edge_);
   }
 
   /// Two films that begin with the same facets never come apart: all of them

@@ -92,15 +92,17 @@ std::vector<std::vector<std::string>> read_loops(CaseContext& context,
   return loops;
 }
 
-/// By its name in the file, or its number, from 1; -1: it is not there.
-int edge_named(const ExactShape& shape, const std::string& edge) {
-  for (std::size_t k = 0; k < shape.edges.size(); ++k) {
-    if (shape.edges[k].name == edge) {
+/// Of an edge or a face, by its name in the file or its number, from 1; -1: it
+/// is not there.
+template <class Part>
+int index_named(const std::vector<Part>& parts, const std::string& name) {
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    if (parts[k].name == name) {
       return static_cast<int>(k);
     }
   }
-  for (std::size_t k = 0; k < shape.edges.size(); ++k) {
-    if (fmt::format("{}", k + 1) == edge) {
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    if (fmt::format("{}", k + 1) == name) {
       return static_cast<int>(k);
     }
   }
@@ -170,7 +172,7 @@ void read_rim(CaseContext& context, const CaseTable& table,
               case_data::Case& result) {
   films::SolidSpec::Rim rim;
   for (const std::string& edge : edges) {
-    rim.edges.push_back(edge_named(*solid.spec.shape, edge));
+    rim.edges.push_back(index_named(solid.spec.shape->edges, edge));
   }
   case_data::CurveEntry curve{.line = table.line("rims")};
   if (!read_step_loop(context, table, path, edges, "rims", result, curve)) {
@@ -252,24 +254,18 @@ void refuse_face(CaseContext& context, const CaseTable& table,
 
 void read_open(CaseContext& context, const CaseTable& table,
                case_data::StepSolidEntry& solid) {
-  std::vector<std::string> known;
-  for (const ExactFace& face : solid.spec.shape->faces) {
-    known.push_back(face.name);
-  }
-  std::set<std::string> open;
-  for (const std::string& face : table.names_or_numbers("open")) {
-    const std::string by_number = "face_" + face;
-    const bool named =
-        std::find(known.begin(), known.end(), face) != known.end();
-    if (!named &&
-        std::find(known.begin(), known.end(), by_number) == known.end()) {
-      refuse_face(context, table, *solid.spec.shape, face);
+  const std::vector<ExactFace>& faces = solid.spec.shape->faces;
+  std::set<int> open;
+  for (const std::string& name : table.names_or_numbers("open")) {
+    const int face = index_named(faces, name);
+    if (face < 0) {
+      refuse_face(context, table, *solid.spec.shape, name);
     }
-    open.insert(named ? face : by_number);
+    open.insert(face);
   }
-  for (std::size_t k = 0; k < known.size(); ++k) {
-    if (!open.contains(known[k])) {
-      solid.faces.push_back(static_cast<int>(k));
+  for (int k = 0; k < static_cast<int>(faces.size()); ++k) {
+    if (!open.contains(k)) {
+      solid.faces.push_back(k);
     }
   }
 }

@@ -14,6 +14,7 @@
 #include "core/geometry/exact_points.h"
 #include "core/geometry/mesh_checks.h"
 #include "evolve/films/body_sides.h"
+#include "evolve/films/solid_frame.h"
 #include "evolve/frozen/film_model.h"
 #include "evolve/groom/refine.h"
 #include "evolve/start/start_complex.h"
@@ -320,6 +321,26 @@ films::FilmSystem rates_of_dome() {
   return rates;
 }
 
+/// Of the dome's facets off its sphere, which has moved.
+double off_dome(const frozen::FilmModel& model, const Points& points,
+                double p) {
+  const films::FilmSystem system = dome_on_a_film(p);
+  const ExactShape now = films::shape_at(system.solids[0], system.curves);
+  const auto& sphere = std::get<ExactSphere>(now.faces[0].surface);
+  const SurfaceMesh mesh = model.boundary(points);
+  double most = 0.0;
+  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+    if (mesh.labels[mesh.facet_label[f]] == "solid/dome") {
+      for (const int corner : mesh.facets[f]) {
+        const double radius =
+            (mesh.points[corner] - sphere.frame.origin).norm();
+        most = std::max(most, std::abs(radius - sphere.radius));
+      }
+    }
+  }
+  return most;
+}
+
 TEST(SolidStart, FilmsEndAtRims) {
   const frozen::FilmModel model = frozen::FilmModel::freeze(
       dome_on_a_film(0.1), {.edge = 0.3, .refinements = 1});
@@ -328,6 +349,10 @@ TEST(SolidStart, FilmsEndAtRims) {
   const auto findings = check_surface(model.boundary(state.points));
   EXPECT_TRUE(findings.empty()) << summary(findings);
   EXPECT_NEAR(state.report.bodies[0].volume, dome().volume + 0.5, 1e-9);
+  EXPECT_LT(off_dome(model, state.points, 0.1), kOnSurface);
+  const settle::FilmState moved = model.settle(dome_on_a_film(0.3));
+  ASSERT_FALSE(moved.failure) << moved.failure->message;
+  EXPECT_LT(off_dome(model, moved.points, 0.3), kOnSurface);
 }
 
 TEST(SolidStart, FollowsItsMotionExactly) {
