@@ -141,7 +141,8 @@ void read_support(CaseContext& context, const CaseTable& table,
   } else if (rigid) {
     load_case.pins.push_back(read_pin(context, table, surfaces));
   } else {
-    case_data::SupportEntry entry{.line = table.line()};
+    case_data::SupportEntry entry;
+    entry.line = table.line();
     read_fix(context, table, entry);
     for (const std::string& surface : surfaces) {
       entry.support.surface = surface;
