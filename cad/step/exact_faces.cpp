@@ -208,27 +208,27 @@ TopoDS_Shape sewn_solid(std::vector<TopoDS_Face>& faces, double scale) {
     BRepBndLib::Add(face, box);
   }
   const double size = std::sqrt(box.SquareExtent());
-  BRepBuilderAPI_Sewing sewing;
-  for (const TopoDS_Face& face : faces) {
-    sewing.Add(face);
-  }
+  Handle(BRepBuilderAPI_Sewing) sewing;
   for (const double share : kSewn) {
-    sewing.SetTolerance(share * size);
-    sewing.Perform();
-    if (sewing.NbFreeEdges() == 0) {
+    sewing = new BRepBuilderAPI_Sewing(share * size);  // it never starts anew
+    for (const TopoDS_Face& face : faces) {
+      sewing->Add(face);
+    }
+    sewing->Perform();
+    if (sewing->NbFreeEdges() == 0) {
       break;
     }
   }
-  if (sewing.NbFreeEdges() > 0) {
-    refuse_free(sewing, scale);
+  if (sewing->NbFreeEdges() > 0) {
+    refuse_free(*sewing, scale);
   }
   for (TopoDS_Face& face : faces) {
-    const TopoDS_Shape now = sewing.Modified(face);
+    const TopoDS_Shape now = sewing->Modified(face);
     if (!now.IsNull() && now.ShapeType() == TopAbs_FACE) {
       face = TopoDS::Face(now);
     }
   }
-  return solid_of(sewing.SewedShape());
+  return solid_of(sewing->SewedShape());
 }
 
 }  // namespace meniscus::step

@@ -14,6 +14,7 @@
 #include <STEPCAFControl_Writer.hxx>
 #include <STEPControl_Writer.hxx>
 #include <ShapeAnalysis_ShapeTolerance.hxx>
+#include <Standard_Failure.hxx>
 #include <StepData_Protocol.hxx>
 #include <StepData_StepModel.hxx>
 #include <StepData_StepWriter.hxx>
@@ -100,13 +101,22 @@ std::string ascii(const std::string& text) {
   return result;
 }
 
+StepShape shape_of(const solid::Brep& brep, double scale) {
+  try {
+    return step_shape(brep, scale);
+  } catch (const Standard_Failure& failure) {
+    throw MeshError(fmt::format("OpenCASCADE makes no solid of the faces: {}",
+                                failure.DynamicType()->Name()));
+  }
+}
+
 }  // namespace
 
 StepReport write_step(const std::filesystem::path& path,
                       const solid::Brep& brep, const StepOptions& options) {
   const StepUnit unit = step_unit(options.unit);
   const StepSilence silence;
-  const StepShape shape = step_shape(brep, unit.millimetres);
+  const StepShape shape = shape_of(brep, unit.millimetres);
   const std::string fault = fault_of(shape);
   if (!fault.empty()) {
     throw MeshError(fmt::format("the faces make no valid solid: {}", fault));
