@@ -175,6 +175,29 @@ class StepSolids(ProgramTest):
             self.expect_same(faces_of(self.folder / "part.step"),
                              faces_of(file))
 
+    def test_pull_is_uniform(self):
+        """A bar held on three of its planes: a stress of 10 all over it."""
+        volume = self.make("Box(1) = {1, 2, 3, 10, 8, 30};")
+        foot = self.face_at("plane", 6, 6, 3)
+        back = self.face_at("plane", 1, 6, 18)
+        left = self.face_at("plane", 6, 2, 18)
+        head = self.face_at("plane", 6, 6, 33)
+        text = self.write(fea=6.0).read_text()
+        text = re.sub(r"supports.*\nloads.*", f"""supports = [
+  {{ on = "plate/{foot}", fix = "z" }}, {{ on = "plate/{back}", fix = "x" }},
+  {{ on = "plate/{left}", fix = "y" }}]
+loads = [{{ on = "plate/{head}", pressure = -10 }}]
+
+[responses.longer]
+kind = "mean_displacement"
+on = "plate/{head}"
+direction = [0, 0, 1]""", text)
+        case = self.folder / "case.toml"
+        case.write_text(text)
+        self.assertLess(abs(self.volume_of(case) / volume - 1.0), SAME)
+        found = self.result(self.folder / "out")["responses"]["longer"]
+        self.assertLess(abs(found / (10.0 * 30.0 / 210e3) - 1.0), SAME)
+
     def test_film_grows_from_an_edge(self):
         own = self.make(BOSS)
         edge = self.edge_at("circle", 18 * math.pi, 0, 0, 11)
