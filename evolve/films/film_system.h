@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/geometry/exact_shape.h"
 #include "core/math/expression.h"
 #include "evolve/curves/curve.h"
 #include "evolve/films/field_spec.h"
@@ -39,6 +40,19 @@ struct FilmSpec {
   double within = 0.0;  // its rims may be so far off their curves [length]
 };
 
+/// A solid from a CAD program whose faces are caps (CapSpec::solid).
+struct SolidSpec {
+  struct Rim {
+    std::string curve;       // its name
+    std::vector<int> edges;  // that it runs along
+  };
+  std::string name;
+  std::shared_ptr<const ExactShape> shape;  // in its own coordinates
+  std::string frame;  // the curve that says where it is (evolve/films/
+                      // solid_frame.h); empty: in its own coordinates
+  std::vector<Rim> rims;
+};
+
 /// Solid; carries no tension. A flat disk across a planar closed curve, a ring
 /// between two closed curves, a patch between opposite sides of one, or facets
 /// as they are, whose rims lie on curves. Where polygons and polylines have the
@@ -58,10 +72,14 @@ struct CapSpec {
   /// Instead of a disk the ruled patch between the first and the third of the
   /// curve's four sides; a cylinder's where these are equal arcs.
   bool ruled = false;
+  /// Instead of these a face of one of the system's solids; `rims` are the
+  /// solid's rims at which it ends.
+  int solid = -1;
+  int face = -1;
 
   /// Those that it ends at.
   std::vector<std::string> curves() const {
-    if (start) {
+    if (start || solid >= 0) {
       return rims;
     }
     std::vector<std::string> all = {curve};
@@ -85,6 +103,7 @@ struct BodySpec {
 struct FilmSystem {
   std::vector<curves::Curve> curves;
   std::vector<FilmSpec> films;
+  std::vector<SolidSpec> solids;
   std::vector<CapSpec> caps;
   std::vector<BodySpec> bodies;
   // Field energies; like tension fields, the same for every design of a model.

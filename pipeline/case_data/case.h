@@ -43,7 +43,8 @@ struct Case {
   std::vector<CurveEntry> curves;
   std::vector<FilmEntry> films;
   std::vector<CapEntry> caps;
-  std::vector<FeatureEntry> features;  // whose faces are among the caps
+  std::vector<FeatureEntry> features;       // whose faces are among the caps
+  std::vector<StepSolidEntry> step_solids;  // the same
   std::vector<BodyEntry> bodies;
   std::vector<WallEntry> walls;
   std::vector<FieldEntry> fields;

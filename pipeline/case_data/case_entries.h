@@ -112,7 +112,7 @@ struct FilmEntry {
 
 struct CapEntry {
   films::CapSpec spec;
-  bool is_file = false;  // else a flat disk
+  bool is_file = false;  // of facets or a STEP solid; else a flat disk
   SourceLine line = 0;
 };
 
@@ -147,6 +147,20 @@ struct FeatureEntry {
   bool round = false;                   // of flange
   SourceLine line = 0;
 };
+
+/// A solid of a STEP file as it is: its faces, solids NAME/FACE, and the curves
+/// of its rims are entries of their own.
+struct StepSolidEntry {
+  films::SolidSpec spec;
+  std::vector<int> faces;  // those that are there: not open
+  SourceLine line = 0;
+};
+
+/// "NAME/FACE".
+inline std::string face_name(const StepSolidEntry& solid, int face) {
+  return solid.spec.name + "/" +
+         solid.spec.shape->faces[static_cast<std::size_t>(face)].name;
+}
 
 inline constexpr int kVoid = -1;
 

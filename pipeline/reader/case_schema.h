@@ -31,7 +31,7 @@ enum class KeyType {
   ConstantVector,  // array of three constants
   PlaceVector,     // array of three places
   Axes,            // two arrays of three constants
-  BossRims,        // array of one or two: "base", "seat" or a quantity
+  Rims,            // array of "base", "seat" or a quantity each; or of edges
   Bounds,          // array of two constants
   Constants,       // array of constants
   ConstantMap,     // inline table: response = constant, of its dimension
