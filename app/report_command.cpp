@@ -12,6 +12,7 @@
 #include "core/error.h"
 #include "core/json.h"
 #include "pipeline/forward/forward_model.h"
+#include "pipeline/forward/worst_cases.h"
 #include "pipeline/results/run_files.h"
 #include "pipeline/store/stored_case.h"
 #include "report/output/run_pictures.h"
@@ -24,14 +25,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// "worst_load_case" of result.json; empty where it has none.
-std::string stored_worst_case(const fs::path& folder) {
+/// An empty object where there is none.
+nlohmann::ordered_json stored_result(const fs::path& folder) {
   const fs::path file = folder / "result.json";
-  if (!fs::exists(file)) {
-    return "";
-  }
-  const auto result = parse_json(read_file(file));
-  return result.is_object() ? result.value("worst_load_case", "") : "";
+  auto result = fs::exists(file) ? parse_json(read_file(file))
+                                 : nlohmann::ordered_json::object();
+  return result.is_object() ? result : nlohmann::ordered_json::object();
 }
 
 /// The pictures again, of the answer whose meshes stand in the folder.
@@ -42,10 +41,12 @@ void redraw_pictures(const fs::path& folder, Monitor& monitor) {
   }
   const store::StudyStore store = store::StudyStore::read(folder.string());
   const case_data::Case input = store::restore_case(store.meta());
-  const case_data::EvaluatedCase inputs = case_data::evaluate(
+  case_data::EvaluatedCase inputs = case_data::evaluate(
       input, store::answer_of_run(input, store.all(), folder));
+  const nlohmann::ordered_json result = stored_result(folder);
+  forward::add_worst_cases(input, result, inputs);
   const std::vector<picture::PictureJob> jobs = output::stored_run_pictures(
-      input, inputs, stored_worst_case(folder), folder);
+      input, inputs, result.value("worst_load_case", ""), folder);
   std::vector<std::string> names;
   names.reserve(jobs.size());
   for (const picture::PictureJob& job : jobs) {

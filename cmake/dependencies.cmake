@@ -22,7 +22,7 @@ if(NOT TARGET deps::opencascade)
   target_include_directories(deps::opencascade SYSTEM
     INTERFACE ${OpenCASCADE_INCLUDE_DIR})
   target_link_libraries(deps::opencascade
-    INTERFACE TKXDESTEP TKXCAF TKSTEP TKTopAlgo TKMesh)
+    INTERFACE TKXDESTEP TKXCAF TKSTEP TKBO TKTopAlgo TKMesh)
 endif()
 
 # meniscus_find_library(TARGET header library...): an imported target for a

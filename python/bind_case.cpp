@@ -3,8 +3,8 @@
 
 #include "core/error.h"
 #include "pipeline/case_data/response_entries.h"
-#include "pipeline/forward/responses.h"
 #include "pipeline/reader/case_reader.h"
+#include "pipeline/responses/responses.h"
 #include "python/array_view.h"
 #include "python/bindings.h"
 

@@ -3,7 +3,7 @@
 
 #include "core/error.h"
 #include "pipeline/case_data/response_entries.h"
-#include "pipeline/forward/responses.h"
+#include "pipeline/responses/responses.h"
 #include "python/array_view.h"
 #include "python/bindings.h"
 #include "python/call.h"

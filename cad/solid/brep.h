@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "core/geometry/exact_shape.h"
 #include "core/types.h"
 
 namespace meniscus::solid {
@@ -110,11 +111,20 @@ struct BrepFace {
   std::vector<std::vector<BrepUse>> loops;
 };
 
+/// Faces of a solid from CAD as they are. Their edges are their own: they lie
+/// on those of other faces, and are joined to them by sewing.
+struct ExactFaces {
+  ExactShape shape;
+  std::vector<int> faces;          // of the shape
+  std::vector<std::string> names;  // of these
+};
+
 /// One closed solid; several shells where it has cavities or parts.
 struct Brep {
   Points vertices;  // [length]
   std::vector<BrepEdge> edges;
   std::vector<BrepFace> faces;
+  std::vector<ExactFaces> exact;
 };
 
 }  // namespace meniscus::solid

@@ -271,6 +271,9 @@ FilmSolid SolidBuilder::build() {
   for (const std::vector<int>& part : connected_parts(mesh_, ends)) {
     const int label = mesh_.facet_label[part[0]];
     const std::string& name = mesh_.labels[label];
+    if (std::count(input_.exact.begin(), input_.exact.end(), name) > 0) {
+      continue;
+    }
     if (is_cap(label)) {
       add_cap(name, part);
     } else {

@@ -19,11 +19,12 @@ struct NamedRim {
 };
 
 struct FilmSolidInput {
-  const SurfaceMesh& mesh;        // closed, outward
-  std::vector<NamedRim> rims;     // loops on none get a spline through them
-  std::vector<std::string> caps;  // labels of planar faces, which end at sides
-                                  // that two rims share
-  double edge = 0.0;              // the film's edge length [length]
+  const SurfaceMesh& mesh;         // closed, outward
+  std::vector<NamedRim> rims;      // loops on none get a spline through them
+  std::vector<std::string> caps;   // labels of planar faces, which end at sides
+                                   // that two rims share
+  std::vector<std::string> exact;  // labels whose faces are Brep::exact's
+  double edge = 0.0;               // the film's edge length [length]
   std::vector<std::string> creased = {};  // of these, those that end at creases
                                           // too: several planes
 };

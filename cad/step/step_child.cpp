@@ -7,6 +7,7 @@
 #include "cad/step/step_edges.h"
 #include "cad/step/step_messages.h"
 #include "cad/step/step_reader.h"
+#include "cad/step/step_solid.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/find_program.h"
@@ -106,6 +107,17 @@ SurfaceMesh read_step_part(const std::filesystem::path& path,
     }
   }
   return mesh;
+}
+
+ExactShape read_step_solid(const std::filesystem::path& path,
+                           const std::string& unit) {
+  StepChild child(path);
+  FrameWriter asked = question(StepQuestion::Solid);
+  asked.put_text(path.string());
+  asked.put_text(unit);
+  const std::string answer = child.ask(asked);
+  FrameReader in(answer);
+  return read_exact_shape_text(in.get_text());
 }
 
 StepEdges::StepEdges(const std::filesystem::path& path, const std::string& unit)

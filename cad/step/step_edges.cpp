@@ -31,7 +31,7 @@ namespace meniscus::step {
 
 namespace {
 
-constexpr int kNamesShown = 12;   // edges that a message lists
+constexpr int kNamesShown = 24;   // edges that a message lists
 constexpr double kClosed = 1e-6;  // gap between edges [their length]
 
 std::string text_of(const Vec3& p) {

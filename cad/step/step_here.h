@@ -9,6 +9,7 @@
 
 #include "cad/step/step_edges.h"
 #include "cad/step/step_reader.h"
+#include "core/geometry/exact_shape.h"
 
 namespace meniscus::step {
 
@@ -16,6 +17,10 @@ namespace meniscus::step {
 /// process's own.
 SurfaceMesh tessellate_step(const std::filesystem::path& path,
                             const ReadStepOptions& options);
+
+/// read_step_solid(). One at a time.
+ExactShape solid_of_step(const std::filesystem::path& path,
+                         const std::string& unit);
 
 /// StepEdges. One at a time.
 class OpenStepEdges {

@@ -84,6 +84,11 @@ class Reader {
       case StepQuestion::Rim:
         put_loop(out, edges_.value().rim(in.get_text()));
         break;
+      case StepQuestion::Solid: {
+        path_ = in.get_text();
+        out.put_text(exact_shape_text(solid_of_step(path_, in.get_text())));
+        break;
+      }
     }
   }
 

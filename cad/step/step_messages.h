@@ -15,7 +15,8 @@ enum class StepQuestion : std::int32_t {
   Part,  // path, unit, edge: a mesh
   Open,  // path, unit: nothing
   Loop,  // names' number, names: a loop of the open file
-  Rim    // face: the same
+  Rim,   // face: the same
+  Solid  // path, unit: a text (exact_shape_text)
 };
 
 /// First in an answer; behind any but Done a message.

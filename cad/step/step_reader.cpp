@@ -1,9 +1,11 @@
+#include <BOPAlgo_Builder.hxx>
 #include <BRepMesh_IncrementalMesh.hxx>
 #include <BRep_Tool.hxx>
 #include <Poly_PolygonOnTriangulation.hxx>
 #include <Poly_Triangulation.hxx>
 #include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
+#include <TopTools_DataMapOfShapeInteger.hxx>
 #include <TopTools_IndexedMapOfShape.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Edge.hxx>
@@ -134,6 +136,52 @@ void Tessellation::add_face(const TopoDS_Face& face, int label) {
   }
 }
 
+/// Solids as they are meshed: those that touch share the faces on which they
+/// do, cut out of the larger ones.
+struct Solids {
+  TopoDS_Shape shape;
+  TopTools_DataMapOfShapeInteger name_of;  // of each face, into names
+  std::vector<std::string> names;
+};
+
+Solids solids_of(const StepFile& file) {
+  Solids solids{.shape = file.shape, .name_of = {}, .names = {}};
+  BOPAlgo_Builder builder;
+  int count = 0;
+  for (TopExp_Explorer solid(file.shape, TopAbs_SOLID); solid.More();
+       solid.Next()) {
+    builder.AddArgument(solid.Current());
+    ++count;
+  }
+  if (count > 1) {
+    builder.SetRunParallel(Standard_False);
+    builder.Perform();
+  }
+  const bool cut = count > 1 && !builder.HasErrors();
+  if (cut) {
+    solids.shape = builder.Shape();
+  }
+  for (TopExp_Explorer solid(file.shape, TopAbs_SOLID); solid.More();
+       solid.Next()) {
+    for (TopExp_Explorer at(solid.Current(), TopAbs_FACE); at.More();
+         at.Next()) {
+      const std::string name = file.name_of(at.Current());
+      const int number = static_cast<int>(solids.names.size());
+      solids.names.push_back(name.empty() ? fmt::format("face_{}", number + 1)
+                                          : name);
+      if (cut) {
+        for (const TopoDS_Shape& piece : builder.Modified(at.Current())) {
+          solids.name_of.Bind(piece, number);
+        }
+      }
+      if (!solids.name_of.IsBound(at.Current())) {
+        solids.name_of.Bind(at.Current(), number);
+      }
+    }
+  }
+  return solids;
+}
+
 int label_named(SurfaceMesh& mesh, const std::string& name) {
   const int label = mesh.label_of(name);
   if (label >= 0) {
@@ -150,22 +198,20 @@ SurfaceMesh tessellate_step(const std::filesystem::path& path,
   const StepSilence silence;
   StepFile file;
   open(file, path, options);
-  BRepMesh_IncrementalMesh(file.shape,
+  const Solids solids = solids_of(file);
+  BRepMesh_IncrementalMesh(solids.shape,
                            kChordInEdges * options.edge * file.millimetres,
                            Standard_False, kChordAngle);
   SurfaceMesh mesh;
   Tessellation tessellation(file, mesh);
-  int number = 0;
-  for (TopExp_Explorer solid(file.shape, TopAbs_SOLID); solid.More();
+  for (TopExp_Explorer solid(solids.shape, TopAbs_SOLID); solid.More();
        solid.Next()) {
     for (TopExp_Explorer at(solid.Current(), TopAbs_FACE); at.More();
          at.Next()) {
-      const TopoDS_Face& face = TopoDS::Face(at.Current());
-      const std::string name = file.name_of(face);
-      ++number;
+      const int* const name = solids.name_of.Seek(at.Current());
       tessellation.add_face(
-          face, label_named(mesh, name.empty() ? fmt::format("face_{}", number)
-                                               : name));
+          TopoDS::Face(at.Current()),
+          label_named(mesh, name != nullptr ? solids.names[*name] : "cut"));
     }
   }
   if (mesh.facets.empty()) {

@@ -16,6 +16,7 @@
 #include <Geom_Line.hxx>
 #include <Geom_Plane.hxx>
 #include <Geom_SphericalSurface.hxx>
+#include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Edge.hxx>
 #include <TopoDS_Shell.hxx>
@@ -24,6 +25,8 @@
 #include <TopoDS_Wire.hxx>
 #include <fmt/format.h>
 
+#include "cad/step/exact_faces.h"
+#include "cad/step/step_knots.h"
 #include "core/error.h"
 #include "core/math/union_find.h"
 
@@ -37,31 +40,6 @@ constexpr double kRound = 1e-9;      // a circle's radii alike, relative
 gp_Pnt to_point(const Vec3& p) { return {p[0], p[1], p[2]}; }
 gp_Dir to_direction(const Vec3& d) { return {d[0], d[1], d[2]}; }
 
-struct Knots {
-  TColStd_Array1OfReal values;
-  TColStd_Array1OfInteger multiplicities;
-};
-
-Knots to_knots(const std::vector<double>& knots) {
-  std::vector<double> values;
-  std::vector<int> counts;
-  for (const double knot : knots) {
-    if (values.empty() || knot > values.back()) {
-      values.push_back(knot);
-      counts.push_back(1);
-    } else {
-      counts.back() += 1;
-    }
-  }
-  const int n = static_cast<int>(values.size());
-  Knots result{TColStd_Array1OfReal(1, n), TColStd_Array1OfInteger(1, n)};
-  for (int k = 0; k < n; ++k) {
-    result.values.SetValue(k + 1, values[k]);
-    result.multiplicities.SetValue(k + 1, counts[k]);
-  }
-  return result;
-}
-
 class ShapeBuilder {
  public:
   ShapeBuilder(const solid::Brep& brep, double scale)
@@ -69,6 +47,8 @@ class ShapeBuilder {
   StepShape build();
 
  private:
+  StepShape build_sewn();
+  void add_faces(StepShape& result);
   void add_vertices();
   void add_edges();
   Handle(Geom_Curve)
@@ -316,18 +296,44 @@ std::vector<int> ShapeBuilder::shells_of_faces() const {
   return shells.roots();
 }
 
-StepShape ShapeBuilder::build() {
-  const std::vector<int> shell_of = shells_of_faces();
+void ShapeBuilder::add_faces(StepShape& result) {
   add_vertices();
   add_edges();
-  StepShape result;
   for (const solid::BrepFace& face : brep_.faces) {
     result.faces.push_back(face_of(face));
+    result.names.push_back(face.name);
   }
   for (const TopoDS_Edge& edge : edges_) {
     builder_.SameRange(edge, true);
     builder_.SameParameter(edge, true);
   }
+}
+
+/// With the exact faces, which have edges of their own.
+StepShape ShapeBuilder::build_sewn() {
+  StepShape result;
+  add_faces(result);
+  for (const solid::ExactFaces& exact : brep_.exact) {
+    for (const TopoDS_Face& face : exact_faces(exact, scale_)) {
+      result.faces.push_back(face);
+    }
+    result.names.insert(result.names.end(), exact.names.begin(),
+                        exact.names.end());
+  }
+  result.solid = sewn_solid(result.faces, scale_);
+  for (TopExp_Explorer at(result.solid, TopAbs_SHELL); at.More(); at.Next()) {
+    result.shells += 1;
+  }
+  return result;
+}
+
+StepShape ShapeBuilder::build() {
+  if (!brep_.exact.empty()) {
+    return build_sewn();
+  }
+  const std::vector<int> shell_of = shells_of_faces();
+  StepShape result;
+  add_faces(result);
   TopoDS_Solid solid;
   builder_.MakeSolid(solid);
   int outer = 0;
@@ -358,6 +364,26 @@ StepShape ShapeBuilder::build() {
 }
 
 }  // namespace
+
+Knots to_knots(const std::vector<double>& knots) {
+  std::vector<double> values;
+  std::vector<int> counts;
+  for (const double knot : knots) {
+    if (values.empty() || knot > values.back()) {
+      values.push_back(knot);
+      counts.push_back(1);
+    } else {
+      counts.back() += 1;
+    }
+  }
+  const int n = static_cast<int>(values.size());
+  Knots result{TColStd_Array1OfReal(1, n), TColStd_Array1OfInteger(1, n)};
+  for (int k = 0; k < n; ++k) {
+    result.values.SetValue(k + 1, values[k]);
+    result.multiplicities.SetValue(k + 1, counts[k]);
+  }
+  return result;
+}
 
 StepShape step_shape(const solid::Brep& brep, double scale) {
   return ShapeBuilder(brep, scale).build();

@@ -1,6 +1,7 @@
 /// Internal to the STEP writer: a Brep as OpenCASCADE's shape.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include <TopoDS_Face.hxx>
@@ -12,7 +13,8 @@ namespace meniscus::step {
 
 struct StepShape {
   TopoDS_Shape solid;
-  std::vector<TopoDS_Face> faces;  // as the Brep's
+  std::vector<TopoDS_Face> faces;  // as the Brep's, then the exact ones
+  std::vector<std::string> names;  // of these
   int shells = 0;
 };
 

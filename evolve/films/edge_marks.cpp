@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "core/geometry/edge_key.h"
+#include "core/geometry/exact_points.h"
 #include "core/math/dense.h"
 #include "core/math/golden_section.h"
 #include "evolve/films/rims.h"
@@ -177,6 +178,11 @@ PlacedVertex born_on(const FilmComplex& complex, const ComplexEdge& mark,
                   shape, made.place,
                   from_a ? a.vertex.t : (from_b ? b.vertex.t : 0.0));
     made.place = curves::point_at(shape, made.vertex.t);
+  } else if (mark.kind == VertexKind::OnEdge) {
+    const ExactEdge& edge = complex.solid_edges[mark.curve].edge();
+    made.vertex.curve = mark.curve;
+    made.vertex.t = nearest_on(edge, made.place);
+    made.place = point_on(edge.curve, made.vertex.t);
   } else if (mark.constraints >= 0) {
     const auto left = [](const ComplexVertex& v) {
       return v.kind == VertexKind::Free && v.constraints >= 0 && !v.held;
@@ -221,6 +227,27 @@ PlacedVertex born_on_band(const FilmComplex& complex, int band,
            .share = middle.share},
           point_on_band(complex.bands[band], complex.curves, middle.t,
                         middle.share)};
+}
+
+PlacedVertex born_on_face(const FilmComplex& complex, int face,
+                          const PlacedVertex& a, const PlacedVertex& b) {
+  const ExactSurface& surface = complex.solid_faces[face].face().surface;
+  const Vec3 middle = 0.5 * (a.place + b.place);
+  Vec2 near = Vec2::Zero();
+  int known = 0;
+  for (const ComplexVertex& vertex : {a.vertex, b.vertex}) {
+    if (vertex.kind == VertexKind::OnFace && vertex.curve == face) {
+      near += Vec2(vertex.t, vertex.share);
+      ++known;
+    }
+  }
+  const Vec2 place = known > 0 ? place_on(surface, middle, near / known)
+                               : place_on(surface, middle);
+  return {{.kind = VertexKind::OnFace,
+           .curve = face,
+           .t = place[0],
+           .share = place[1]},
+          point_on(surface, place)};
 }
 
 }  // namespace meniscus::films

@@ -41,7 +41,8 @@ struct PlacedVertex {
 
 /// The vertex born in the middle of marked edge `mark` between a and b: on
 /// curves at the middle parameter (of an end that is not on the curve: at the
-/// nearest point), on walls at the point of the level sets next to the middle.
+/// nearest point), on edges of solids at the point next to the middle, on walls
+/// at the point of the level sets next to the middle.
 PlacedVertex born_on(const FilmComplex& complex, const ComplexEdge& mark,
                      const PlacedVertex& a, const PlacedVertex& b);
 
@@ -52,6 +53,10 @@ BandPlace place_on_band(const FilmComplex& complex, int band,
 /// The vertex born in a ring, halfway between a and b of its band: inside it,
 /// or on its curves.
 PlacedVertex born_on_band(const FilmComplex& complex, int band,
+                          const PlacedVertex& a, const PlacedVertex& b);
+
+/// The vertex born inside a solid's face, next to the middle of a and b.
+PlacedVertex born_on_face(const FilmComplex& complex, int face,
                           const PlacedVertex& a, const PlacedVertex& b);
 
 /// The point of the level sets of a constraint set next to `at`, by Newton's

@@ -4,10 +4,12 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "core/geometry/exact_shape.h"
 #include "core/geometry/surface_mesh.h"
 #include "core/math/expression.h"
 #include "evolve/films/film_system.h"
@@ -21,16 +23,20 @@ enum class VertexKind {
   Slides,   // liquid: moves along curves[curve], t is unknown
   InCap,    // inside a flat cap: a fixed linear map of the cap's rim
   OnBand,   // inside a ring: held at point_on_band(bands[curve], t, share)
+  OnEdge,   // of a solid: at solid_edges[curve], t
+  OnFace,   // inside a solid's face: at solid_faces[curve], (t, share)
   Fixed     // solid
 };
 
 struct ComplexVertex {
   VertexKind kind = VertexKind::Free;
-  int curve = -1;        // OnCurve, Slides: index into curves; OnBand: bands
+  int curve = -1;        // OnCurve, Slides: index into curves; OnBand: bands;
+                         // OnEdge, OnFace: solid_edges, solid_faces
   double t = 0.0;        // of the curve; OnBand: of the band's outer curve
   int constraints = -1;  // Free: index into constraint_sets; -1: none
   bool held = true;      // by them now; false: a one-sided wall was left
-  double share = 0.0;    // OnBand: of the way to the inner curve
+  double share = 0.0;    // OnBand: of the way to the inner curve; OnFace: the
+                         // surface's second parameter, t the first
 };
 
 /// Marked edges: those that refinement and grooming must know of. Every other
@@ -40,7 +46,7 @@ struct ComplexEdge {
   int a = -1;
   int b = -1;
   VertexKind kind = VertexKind::Free;  // of the vertices born on it
-  int curve = -1;                      // OnCurve, Slides
+  int curve = -1;                      // OnCurve, Slides, OnEdge
   int constraints = -1;                // index into constraint_sets
   bool refine = true;                  // false: stays one edge
   int integrals = -1;                  // index into integral_sets; -1: none
@@ -78,10 +84,21 @@ struct ComplexSurface {
   bool refine = true;                       // false: facets stay as they are
   int constraints = -1;  // of the vertices born inside it (obstacles)
   int band = -1;         // of a ring: index into bands
+  int face = -1;         // of a solid's face: index into solid_faces
   /// Of a solid face that films wet on a plane wall: the unit normal that its
   /// facets have. Its area along that normal counts with `tension`, which may
   /// be below 0; `constraints` is of its rim, which slides on the wall.
   std::optional<Vec3> wetted;
+};
+
+/// An edge or a face of a solid from a CAD program.
+struct SolidPart {
+  std::shared_ptr<const ExactShape> shape;
+  int part = 0;    // index into its edges or faces
+  int frame = -1;  // of curves: moves with it (evolve/films/solid_frame.h)
+
+  const ExactEdge& edge() const { return shape->edges[part]; }
+  const ExactFace& face() const { return shape->faces[part]; }
 };
 
 /// One surface's part in a body: sign +1 where the surface's facet normals
@@ -147,6 +164,8 @@ struct FilmComplex {
   std::vector<ComplexBody> bodies;
   std::vector<curves::Curve> curves;
   std::vector<RuledBand> bands;  // of rings
+  std::vector<SolidPart> solid_edges;
+  std::vector<SolidPart> solid_faces;
   std::vector<LevelSet> level_sets;
   std::vector<std::vector<int>> constraint_sets;  // of indices of level_sets
   std::vector<LineIntegral> integrals;

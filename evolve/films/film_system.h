@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/geometry/exact_shape.h"
 #include "core/math/expression.h"
 #include "evolve/curves/curve.h"
 #include "evolve/films/field_spec.h"
@@ -48,6 +49,19 @@ struct PlaneWall {
   double tension = 0.0;
 };
 
+/// A solid from a CAD program whose faces are caps (CapSpec::solid).
+struct SolidSpec {
+  struct Rim {
+    std::string curve;       // its name
+    std::vector<int> edges;  // that it runs along
+  };
+  std::string name;
+  std::shared_ptr<const ExactShape> shape;  // in its own coordinates
+  std::string frame;  // the curve that says where it is (evolve/films/
+                      // solid_frame.h); empty: in its own coordinates
+  std::vector<Rim> rims;
+};
+
 /// Solid; carries no tension. A flat disk across a planar closed curve, a ring
 /// between two closed curves, a patch between opposite sides of one, or facets
 /// as they are, whose rims lie on curves. Where polygons and polylines have the
@@ -71,10 +85,14 @@ struct CapSpec {
   /// the films on them begin; they hold nothing. The same for every design of a
   /// model but for its tension.
   std::optional<PlaneWall> wall = std::nullopt;
+  /// Instead of these a face of one of the system's solids; `rims` are the
+  /// solid's rims at which it ends.
+  int solid = -1;
+  int face = -1;
 
   /// Those that it ends at.
   std::vector<std::string> curves() const {
-    if (start) {
+    if (start || solid >= 0) {
       return rims;
     }
     std::vector<std::string> all = {curve};
@@ -98,6 +116,7 @@ struct BodySpec {
 struct FilmSystem {
   std::vector<curves::Curve> curves;
   std::vector<FilmSpec> films;
+  std::vector<SolidSpec> solids;
   std::vector<CapSpec> caps;
   std::vector<BodySpec> bodies;
   // Field energies; like tension fields, the same for every design of a model.

@@ -9,7 +9,7 @@ std::vector<int> rim_neighbours(const FilmComplex& complex) {
   const auto& vertices = complex.vertices;
   std::vector<char> marked(complex.curves.size(), 0);
   for (const ComplexEdge& edge : complex.edges) {
-    if (edge.curve >= 0) {
+    if (edge.curve >= 0 && edge.kind != VertexKind::OnEdge) {
       marked[edge.curve] = 1;
     }
   }

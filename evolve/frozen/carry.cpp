@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "core/math/union_find.h"
 #include "evolve/energy/film_space.h"
+#include "evolve/films/solid_frame.h"
 
 namespace meniscus::frozen {
 
@@ -194,7 +195,28 @@ Carry::Carry(const films::FilmComplex& reference,
       stands_[band.outer].push_back({id, vertex.t, 1.0 - vertex.share});
       stands_[band.inner].push_back(
           {id, band.partner_of_outer(vertex.t), vertex.share});
+    } else if (vertex.kind == films::VertexKind::OnEdge ||
+               vertex.kind == films::VertexKind::OnFace) {
+      const bool edge = vertex.kind == films::VertexKind::OnEdge;
+      add_stands_on_frame(
+          reference, id,
+          (edge ? reference.solid_edges : reference.solid_faces)[vertex.curve]
+              .frame);
     }
+  }
+}
+
+void Carry::add_stands_on_frame(const films::FilmComplex& reference, int vertex,
+                                int frame) {
+  if (frame < 0) {
+    return;
+  }
+  stands_on_curves_[vertex] = 1;
+  const std::array<double, 4> weights =
+      films::frame_weights(films::frame_at(reference.curves[frame].shape),
+                           reference.mesh.points[vertex]);
+  for (int k = 0; k < 4; ++k) {
+    stands_[frame].push_back({vertex, films::frame_parameter(k), weights[k]});
   }
 }
 

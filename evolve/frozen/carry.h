@@ -25,8 +25,8 @@ class Carry {
   Carry(const films::FilmComplex& reference,
         const std::vector<int>& film_order);
 
-  /// A vertex that stands on a curve, or by a share on each of two: X_v = sum
-  /// of weight x point_at(curve, t).
+  /// A vertex that stands on a curve, by a share on each of two, or on the four
+  /// points of a solid's frame: X_v = sum of weight x point_at(curve, t).
   struct Stand {
     int vertex = 0;
     double t = 0.0;
@@ -70,6 +70,8 @@ class Carry {
 
     Eigen::MatrixXd solve(const Eigen::MatrixXd& right) const;
   };
+  void add_stands_on_frame(const films::FilmComplex& reference, int vertex,
+                           int frame);
   static Extension extend(const films::FilmComplex& reference,
                           films::VertexKind kind,
                           const std::vector<int>& order);

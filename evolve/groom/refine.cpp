@@ -20,6 +20,7 @@ struct EdgePlan {
   std::vector<char> in_film;
   std::vector<int> obstacle;  // constraint set of its films, or -1
   std::vector<int> band;      // of its rings, or -1
+  std::vector<int> face;      // of its solids, or -1
 };
 
 EdgePlan plan_edges(const films::FilmComplex& complex,
@@ -29,6 +30,7 @@ EdgePlan plan_edges(const films::FilmComplex& complex,
   plan.in_film.assign(plan.edges.size(), 0);
   plan.obstacle.assign(plan.edges.size(), -1);
   plan.band.assign(plan.edges.size(), -1);
+  plan.face.assign(plan.edges.size(), -1);
   // An edge is a film's, stays whole or meets an obstacle if any of its facets
   // says so.
   std::vector<char> whole(plan.edges.size(), 0);
@@ -40,6 +42,7 @@ EdgePlan plan_edges(const films::FilmComplex& complex,
       whole[e] |= surface.refine ? 0 : 1;
       plan.obstacle[e] = std::max(plan.obstacle[e], surface.constraints);
       plan.band[e] = std::max(plan.band[e], surface.band);
+      plan.face[e] = std::max(plan.face[e], surface.face);
     }
   }
   std::vector<char> seen(marks.all().size(), 0);
@@ -59,6 +62,7 @@ EdgePlan plan_edges(const films::FilmComplex& complex,
       plan.in_film.push_back(0);
       plan.obstacle.push_back(-1);
       plan.band.push_back(-1);
+      plan.face.push_back(-1);
       whole.push_back(0);
     }
   }
@@ -89,6 +93,9 @@ films::PlacedVertex middle_of(const films::FilmComplex& complex,
   }
   if (plan.band[e] >= 0 && plan.in_film[e] == 0) {
     return films::born_on_band(complex, plan.band[e], {va, pa}, {vb, pb});
+  }
+  if (plan.face[e] >= 0 && plan.in_film[e] == 0) {
+    return films::born_on_face(complex, plan.face[e], {va, pa}, {vb, pb});
   }
   films::PlacedVertex made;
   made.place = 0.5 * (pa + pb);

@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "core/geometry/surface_mesh.h"
+#include "core/memory.h"
 #include "evolve/films/rim_grading.h"
 #include "evolve/start/disk_fill.h"
 
@@ -120,6 +121,19 @@ std::vector<std::vector<int>> faces_with_holes(
     }
   }
   return faces;
+}
+
+void require_room(double area, double edge) {
+  constexpr double kBytes = 1500.0;  // of a facet
+  const double facets = area / (0.25 * std::sqrt(3.0) * edge * edge);
+  const double held = available_memory() / kBytes;
+  if (facets > held) {
+    throw InvalidInput(fmt::format(
+        "the caps take about {:.2g} facets at edges of {:.4g}, and memory "
+        "holds {:.2g}; use longer edges, or look for a curve that is too "
+        "large",
+        facets, edge, held));
+  }
 }
 
 SurfaceMesh fill_face(const std::vector<Points>& loops, double edge,

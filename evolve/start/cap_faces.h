@@ -19,6 +19,10 @@ void require_flat(const Points& rim, const std::string& cap,
 std::vector<std::vector<int>> faces_with_holes(
     const std::vector<Points>& loops);
 
+/// Before faces of so much area are filled: throws InvalidInput where their
+/// facets outgrow memory.
+void require_room(double area, double edge);
+
 /// Triangles of about `edge` in the first loop less the others, whose points
 /// come first in their order; with `graded`, finer beside loops that are cut
 /// finer. Throws InvalidInput naming `curve`.

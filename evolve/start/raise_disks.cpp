@@ -33,7 +33,7 @@ std::map<std::string, std::vector<Filling>> fillings_of(
       }
     }
     for (const films::CapSpec& cap : system.caps) {
-      if (cap.name == name && !cap.start) {
+      if (cap.name == name && !cap.start && cap.solid < 0) {
         result[cap.curve].push_back({name});
       }
     }

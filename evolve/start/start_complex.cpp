@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "core/memory.h"
 #include "evolve/energy/fields.h"
 #include "evolve/energy/tension_field.h"
 #include "evolve/films/body_sides.h"
@@ -25,6 +24,7 @@
 #include "evolve/start/fill_patch.h"
 #include "evolve/start/loft.h"
 #include "evolve/start/raise_disks.h"
+#include "evolve/start/solid_start.h"
 #include "evolve/start/wetted_faces.h"
 
 namespace meniscus::start {
@@ -41,12 +41,16 @@ struct Rim {
 class StartBuilder {
  public:
   StartBuilder(const films::FilmSystem& system, double edge)
-      : system_(system), edge_(edge), shared_(system.curves) {}
+      : system_(system),
+        edge_(edge),
+        shared_(system.curves),
+        solids_(system, edge) {}
 
   films::FilmComplex build() {
     check_names();
     result_.curves = system_.curves;
     facets_ = start_from_facets(system_, edge_, system_.keep_facets);
+    facets_.cuts.merge(solids_.take_cuts());
     facet_points_.assign(facets_.points.size(), -1);
     for (const films::FilmSpec& film : system_.films) {
       for (const std::string& name : film.curves) {
@@ -59,6 +63,11 @@ class StartBuilder {
       }
     }
     require_room_for_caps();
+    solids_.add_edges(
+        [&](const std::string& curve) -> const std::vector<int>& {
+          return rims_.at(curve).ids;
+        },
+        result_);
     shared_.mark_edges(result_);
     for (const films::FilmSpec& film : system_.films) {
       add_film(film);
@@ -122,24 +131,15 @@ class StartBuilder {
   /// Before they are filled: their flat areas alone tell edges that are far too
   /// short.
   void require_room_for_caps() {
-    constexpr double kBytes = 1500.0;  // of a facet
     double area = 0.0;
     for (const films::CapSpec& cap : system_.caps) {
-      if (!cap.start && !cap.ruled && cap.inner.empty()) {
+      if (!cap.start && !cap.ruled && cap.inner.empty() && cap.solid < 0) {
         for (const std::string& name : cap.curves()) {
           area += polygon_area_vector(points_of(rims_.at(name))).norm();
         }
       }
     }
-    const double facets = area / (0.25 * std::sqrt(3.0) * edge_ * edge_);
-    const double held = available_memory() / kBytes;
-    if (facets > held) {
-      throw InvalidInput(fmt::format(
-          "the caps take about {:.2g} facets at edges of {:.4g}, and memory "
-          "holds {:.2g}; use longer edges, or look for a curve that is too "
-          "large",
-          facets, edge_, held));
-    }
+    require_room(area, edge_);
   }
 
   /// Two films that begin with the same facets never come apart: all of them
@@ -369,6 +369,10 @@ class StartBuilder {
       add_sheet(cap.name, label, films::VertexKind::InCap);
       return;
     }
+    if (cap.solid >= 0) {
+      solids_.add_face(cap, label, result_);
+      return;
+    }
     std::vector<Rim> rims;
     std::vector<Points> loops;
     for (const std::string& name : cap.curves()) {
@@ -500,6 +504,7 @@ class StartBuilder {
   films::FilmComplex result_;
   std::map<std::string, Rim> rims_;
   films::SharedRims shared_;
+  SolidStart solids_;
   FacetStart facets_;
   std::vector<int> facet_points_;  // ids of its points; -1: not yet
 };

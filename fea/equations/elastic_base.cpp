@@ -52,6 +52,9 @@ loads::LoadCase only_holds(const loads::LoadCase& load_case) {
   loads::LoadCase held;
   held.supports = without_numbers(load_case.supports);
   held.held_nodes = load_case.held_nodes;
+  for (loads::HeldNode& node : held.held_nodes) {
+    node.displacement = 0.0;
+  }
   held.springs = load_case.springs;
   held.node_springs = load_case.node_springs;
   held.pins = without_numbers(load_case.pins);

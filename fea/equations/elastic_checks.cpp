@@ -55,9 +55,8 @@ void check_memory(const TetMesh& mesh, SolverKind solver) {
 void refuse_pins(const loads::LoadCase& load_case) {
   if (!load_case.pins.empty()) {
     throw InvalidInput(fmt::format(
-        "load case '{}': natural frequencies and buckling factors do not know "
-        "rigid pins ('{}'); use a load case without one, the same force "
-        "spread (by = \"spread\"), or a support (fix) on the surface",
+        "load case '{}': natural frequencies of a part that supports leave "
+        "free do not know rigid pins ('{}'); build an ElasticModel of it",
         load_case.name, load_case.pins.front().surfaces.text()));
   }
 }

@@ -20,7 +20,7 @@ void check_arrays(const TetMesh& mesh);
 void check_memory(const TetMesh& mesh, SolverKind solver);
 
 /// Throws InvalidInput, naming load case and surface, for a load case with
-/// rigid pins: eigenvalue problems do not know them.
+/// rigid pins: modes of parts that supports leave free do not know them.
 void refuse_pins(const loads::LoadCase& load_case);
 
 /// The load case's nodal forces; throws InvalidInput when there are none and no

@@ -5,10 +5,17 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "fea/equations/elastic_checks.h"
 #include "fea/equations/elastic_system.h"
+#include "fea/equations/held_solver.h"
 
 namespace meniscus::equations {
+
+namespace {
+
+/// They precondition, and nothing else: the answer does not see their error.
+constexpr double kPinMotions = 1e-6;
+
+}  // namespace
 
 VectorX to_solver(const solver::NodeOrder& order, const VectorX& v) {
   VectorX w(v.size());
@@ -41,8 +48,7 @@ ElasticOperator ElasticSystem::operator_at(
                                    load_cases.size()));
   }
   const loads::LoadCase& loads = load_cases[load_case];
-  refuse_pins(loads);
-  supports::Restraints restraints =
+  const supports::Restraints restraints =
       supports::make_restraints(mesh, loads, base_.order);
   if (!supports::alike(restraints, group->restraints)) {
     throw SolverError(fmt::format(
@@ -57,12 +63,25 @@ ElasticOperator ElasticSystem::operator_at(
                          .preconditioner = group->preconditioner.get(),
                          .materials = regions.materials,
                          .K = {},
-                         .freedom = std::move(restraints.freedom),
+                         .freedom = restraints.freedom,
+                         .pins = restraints.pins,
+                         .pin_motions = {},
                          .x = base_.solver_points(mesh)};
   if (const auto failure = assemble(mesh, regions.laws, result.K)) {
     throw MeshError(failure->message);
   }
   supports::add_springs(shared_->table.pattern, restraints.springs, result.K);
+  HeldSolver solver({.pattern = shared_->table.pattern,
+                     .matrix = result.K,
+                     .preconditioner = *group->preconditioner,
+                     .restraints = restraints,
+                     .tolerance = kPinMotions,
+                     .max_iterations = base_.options.max_iterations,
+                     .monitor = base_.options.monitor != nullptr
+                                    ? *base_.options.monitor
+                                    : silent_monitor(),
+                     .second_chance = multigrid_});
+  result.pin_motions = find_pin_motions(result.x, solver);
   return result;
 }
 

@@ -5,10 +5,12 @@
 #include <vector>
 
 #include "fea/element/material.h"
+#include "fea/equations/pin_motions.h"
 #include "fea/solver/assembly.h"
 #include "fea/solver/node_freedom.h"
 #include "fea/solver/node_order.h"
 #include "fea/solver/preconditioner.h"
+#include "fea/supports/pins.h"
 
 namespace meniscus::equations {
 
@@ -20,8 +22,10 @@ struct ElasticOperator {
 
   std::vector<element::Material> materials;  // of the design
   solver::BlockMatrix<double> K;             // with springs
-  solver::NodeFreedom freedom;
-  Points x;  // of solver's nodes [length]
+  solver::NodeFreedom freedom;               // pins' nodes are held
+  std::vector<supports::PinFrame> pins;
+  PinMotions pin_motions;  // of them
+  Points x;                // of solver's nodes [length]
 };
 
 /// Vectors of 3 per node from the mesh's numbering into the solver's, and back.

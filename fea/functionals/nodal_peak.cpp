@@ -221,10 +221,15 @@ NodalPeak nodal_peak(const NodalPeakInput& input,
   const double power =
       std::max(kLeastPower, std::log(numbers) / std::log1p(input.excess));
   const Values values = values_of(nodes, criterion, power);
-  double largest = 0.0;
-  for (const std::vector<double>& reading : values) {
-    largest =
-        std::max(largest, *std::max_element(reading.begin(), reading.end()));
+  NodalPeak peak;
+  peak.largest.resize(nodes.states.size());
+  double largest = -1.0;
+  for (int r = 0; r < kReadings; ++r) {
+    const auto at = std::max_element(values[r].begin(), values[r].end());
+    if (*at > largest) {
+      largest = *at;
+      gather(nodes, r, static_cast<int>(at - values[r].begin()), peak.largest);
+    }
   }
   double sum = 0.0;
   for (const std::vector<double>& reading : values) {
@@ -232,7 +237,6 @@ NodalPeak nodal_peak(const NodalPeakInput& input,
       sum += value > 0.0 ? std::pow(value / largest, power) : 0.0;
     }
   }
-  NodalPeak peak;
   peak.value = largest > 0.0 ? largest * std::pow(sum, 1.0 / power) : 0.0;
   if (input.derivatives == element::Derivatives::All) {
     differentiate_peak(input, nodes, criterion, power, values, peak);

@@ -46,6 +46,9 @@ struct NodalPeak {
     VectorX by_temperature;
   };
   std::vector<State> states;
+  /// The states' stresses at the node and reading with the largest value, the
+  /// first of equals.
+  std::vector<element::Stress> largest;
 };
 
 /// (sum v^p)^(1/p) over the copies of all nodes that count, each once as

@@ -44,6 +44,17 @@ double add_von_mises(const Stress& s, double factor, Stress* by) {
   return factor * value;
 }
 
+/// a : b with a : a the square of the von Mises stress.
+double von_mises_product(const Stress& a, const Stress& b) {
+  double sum = 0.0;
+  for (int k = 0; k < 3; ++k) {
+    const int next = (k + 1) % 3;
+    sum +=
+        0.5 * (a[k] - a[next]) * (b[k] - b[next]) + 3.0 * a[k + 3] * b[k + 3];
+  }
+  return sum;
+}
+
 /// sqrt(x^2 + round^2), and its slope: |x|, above it by no more than `round`.
 std::pair<double, double> smooth_size(double x, double round) {
   const double size = std::hypot(x, round);
@@ -99,6 +110,38 @@ NodeCriterion von_mises_ratio(std::vector<double> allowable) {
                        std::span<const Stress> stress, std::span<Stress> by) {
     return add_von_mises(stress[0], 1.0 / allowable[region],
                          by.empty() ? nullptr : by.data());
+  }};
+}
+
+Vec3 worst_stress_direction(std::span<const Stress> stress, const Cone& cone) {
+  Mat3 Q;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j <= i; ++j) {
+      Q(i, j) = Q(j, i) = von_mises_product(stress[i], stress[j]);
+    }
+  }
+  return worst_of_quadratic(Q, cone).direction;
+}
+
+NodeCriterion worst_von_mises_ratio(std::vector<double> allowable,
+                                    const Cone& cone) {
+  require_positive(allowable, "the allowable stress");
+  return {.value = [allowable = std::move(allowable), cone](
+                       int region, double /*power*/,
+                       std::span<const Stress> stress, std::span<Stress> by) {
+    const Vec3 d = worst_stress_direction(stress, cone);
+    Stress sum{};
+    Stress by_sum{};
+    for (int k = 0; k < 3; ++k) {
+      element::add_scaled(d[k], stress[k], sum);
+    }
+    const double value = add_von_mises(sum, 1.0 / allowable[region],
+                                       by.empty() ? nullptr : &by_sum);
+    // The direction is the best: what it changes by does not count.
+    for (int k = 0; k < 3 && !by.empty(); ++k) {
+      element::add_scaled(d[k], by_sum, by[k]);
+    }
+    return value;
   }};
 }
 

@@ -2,14 +2,26 @@
 /// is just allowed. Bounds of their largest value: nodal_peak.h.
 #pragma once
 
+#include <span>
 #include <vector>
 
+#include "core/math/worst_direction.h"
 #include "fea/functionals/nodal_peak.h"
 
 namespace meniscus::functionals {
 
 /// Von Mises stress over `allowable`, one per region, > 0 [pressure].
 NodeCriterion von_mises_ratio(std::vector<double> allowable);
+
+/// The same of the worst sum d_x a + d_y b + d_z c of three states, d a unit
+/// vector in the cone: the root of a quadratic form's largest value, with what
+/// worst_of_quadratic() says of its derivative.
+NodeCriterion worst_von_mises_ratio(std::vector<double> allowable,
+                                    const Cone& cone);
+
+/// The d of that ratio at a node.
+Vec3 worst_stress_direction(std::span<const element::Stress> stress,
+                            const Cone& cone);
 
 /// The largest principal stress over `allowable`, where it is tension: the
 /// p-norm of the positive parts of all three, so that it is smooth where they

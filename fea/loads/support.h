@@ -39,6 +39,7 @@ struct Support {
 struct HeldNode {
   int node = 0;
   Vec3 direction = Vec3::UnitX();  // any length but 0
+  double displacement = 0.0;       // that it is held at along it [length]
 
   bool operator==(const HeldNode&) const = default;
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -24,12 +25,17 @@ EigenPairs eigenpairs_of(const equations::ElasticOperator& op,
   if (may_factor && small) {
     first.max_iterations = std::min(options.max_iterations, kSlow);
   }
+  std::optional<PinSpace> space;
+  if (!op.pins.empty()) {
+    space.emplace(op);
+  }
+  const PinSpace* pins = space ? &*space : nullptr;
   EigenPairs pairs = largest_eigenpairs(
-      {pattern, op.K, A, *op.preconditioner, op.freedom}, start, first);
+      {pattern, op.K, A, *op.preconditioner, op.freedom, pins}, start, first);
   const bool slow = may_factor && pairs.end == EigenEnd::TooManyIterations;
   if (small && (slow || pairs.end == EigenEnd::NotPositive)) {
     const auto factor = solver::make_direct(pattern, op.K, op.freedom);
-    pairs = largest_eigenpairs({pattern, op.K, A, *factor, op.freedom},
+    pairs = largest_eigenpairs({pattern, op.K, A, *factor, op.freedom, pins},
                                slow ? pairs.x : start, options);
   }
   return pairs;

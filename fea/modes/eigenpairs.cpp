@@ -66,13 +66,18 @@ class EigenSearch {
       : problem_(problem),
         options_(options),
         rows_(3L * problem.pattern.nodes),
-        products_(problem.pattern, problem.freedom) {}
+        products_(problem.pattern, problem.pins != nullptr
+                                       ? problem.pins->freedom()
+                                       : problem.freedom) {}
 
   EigenPairs run(const solver::Columns& start);
 
  private:
   Eigen::Index block_size(Eigen::Index given) const;
+  void project(const solver::ColumnsOut& v) const;
+  void apply_a(const solver::ColumnsIn& x, const solver::ColumnsOut& y);
   void apply_both(Eigen::Index first, Eigen::Index count);
+  void precondition(const solver::ColumnsIn& r, const solver::ColumnsOut& z);
   void begin(const solver::Columns& start);
   bool improve(Eigen::Index lead);
   void measure();
@@ -112,6 +117,9 @@ Eigen::Index EigenSearch::block_size(Eigen::Index given) const {
   for (const Mat3& P : problem_.freedom.projector) {
     free -= 3.0 - P.trace();
   }
+  if (problem_.pins != nullptr) {
+    free += static_cast<double>(problem_.pins->motions());
+  }
   Eigen::Index block =
       std::max<Eigen::Index>(options_.count, given) + options_.guards;
   if (block > solver::kMostColumns) {  // whole fours cost no more
@@ -121,11 +129,43 @@ Eigen::Index EigenSearch::block_size(Eigen::Index given) const {
   return std::min<Eigen::Index>(block, std::lround(free));
 }
 
+void EigenSearch::project(const solver::ColumnsOut& v) const {
+  if (problem_.pins == nullptr) {
+    solver::project(problem_.freedom, v);
+    return;
+  }
+  solver::project(problem_.pins->freedom(), v);
+  problem_.pins->project(v);
+}
+
+void EigenSearch::apply_a(const solver::ColumnsIn& x,
+                          const solver::ColumnsOut& y) {
+  products_.apply(problem_.A, x, y);
+  if (problem_.pins != nullptr) {
+    problem_.pins->project(y);
+  }
+}
+
 void EigenSearch::apply_both(Eigen::Index first, Eigen::Index count) {
   products_.apply(problem_.K, S_.middleCols(first, count),
                   KS_.middleCols(first, count));
-  products_.apply(problem_.A, S_.middleCols(first, count),
-                  AS_.middleCols(first, count));
+  if (problem_.pins != nullptr) {
+    problem_.pins->project(KS_.middleCols(first, count));
+  }
+  apply_a(S_.middleCols(first, count), AS_.middleCols(first, count));
+}
+
+/// Of rigid pins apart: their motions, and the rest with them at rest.
+void EigenSearch::precondition(const solver::ColumnsIn& r,
+                               const solver::ColumnsOut& z) {
+  if (problem_.pins == nullptr) {
+    products_.apply(problem_.preconditioner, r, z);
+    return;
+  }
+  solver::Columns rest = r;
+  problem_.pins->hold(rest);
+  products_.apply(problem_.preconditioner, rest, z);
+  problem_.pins->add_motions(r, z);
 }
 
 void EigenSearch::begin(const solver::Columns& start) {
@@ -140,15 +180,14 @@ void EigenSearch::begin(const solver::Columns& start) {
       X(i, k) = noise(static_cast<std::uint64_t>(k * rows_ + i));
     }
   }
-  solver::project(problem_.freedom, X);
+  project(X);
   // One step of inverse iteration leaves little of the roughness.
-  products_.apply(problem_.A, S_.middleCols(given, m_ - given),
-                  AS_.middleCols(given, m_ - given));
-  products_.apply(problem_.preconditioner, AS_.middleCols(given, m_ - given),
-                  S_.middleCols(given, m_ - given));
+  apply_a(S_.middleCols(given, m_ - given), AS_.middleCols(given, m_ - given));
+  precondition(AS_.middleCols(given, m_ - given),
+               S_.middleCols(given, m_ - given));
   if (given > 0) {
     S_.leftCols(given) = start.leftCols(given);
-    solver::project(problem_.freedom, S_.leftCols(given));
+    project(S_.leftCols(given));
   }
   apply_both(0, m_);
 }
@@ -216,8 +255,7 @@ void EigenSearch::measure() {
       moving.push_back(k);
     }
   }
-  products_.apply(problem_.preconditioner, R.leftCols(w_),
-                  S_.middleCols(at, w_));
+  precondition(R.leftCols(w_), S_.middleCols(at, w_));
   const VectorX square =
       solver::gram(R.leftCols(w_), S_.middleCols(at, w_)).diagonal();
   residuals_.conservativeResize(m_);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "core/monitor.h"
+#include "fea/modes/pin_space.h"
 #include "fea/solver/multi_vector.h"
 
 namespace meniscus::modes {
@@ -15,7 +16,8 @@ struct EigenProblem {
   const solver::BlockMatrix<double>& K;
   const solver::NodalMatrix& A;
   const solver::Preconditioner& preconditioner;
-  const solver::NodeFreedom& freedom;
+  const solver::NodeFreedom& freedom;  // that the preconditioner is for
+  const PinSpace* pins = nullptr;      // where there are rigid pins
 };
 
 struct EigenOptions {

@@ -22,19 +22,20 @@ void add_numbers(double factor, const std::vector<double>& more,
 
 /// A functional of a mesh with nothing in it yet.
 void clear(const TetMesh& mesh, std::size_t regions,
-           element::Functional& result) {
+           const loads::LoadCase& held, ModeFunctional& result) {
+  result.by_pin_point.assign(held.pins.size(), Vec3::Zero());
   result.by_nodes.assign(mesh.nodes.size(), Vec3::Zero());
   result.by_modulus.assign(regions, 0.0);
 }
 
 }  // namespace
 
-element::Functional factor_functional(
+ModeFunctional factor_functional(
     const TetMesh& mesh, const std::vector<element::Material>& materials,
     const loads::LoadCase& load_case, const VectorX& u,
     const WeightedModes& modes) {
-  element::Functional result;
-  clear(mesh, materials.size(), result);
+  ModeFunctional result;
+  clear(mesh, materials.size(), load_case, result);
   result.by_displacement = VectorX::Zero(u.size());
   for (std::size_t k = 0; k < modes.values.size(); ++k) {
     const double weight = modes.weights[static_cast<Eigen::Index>(k)];
@@ -45,13 +46,14 @@ element::Functional factor_functional(
     const VectorX& x = modes.shapes[k];
     const element::Functional geometric =
         geometric_work(mesh, materials, load_case, u, x);
-    const element::Functional stiffness = stiffness_work(
+    const ModeFunctional stiffness = stiffness_work(
         mesh, materials, load_case, x,
         buckling_reactions(mesh, materials, load_case, u, factor, x));
     const double by_stiffness = -weight / geometric.value;
     const double by_geometric = factor * by_stiffness;
     result.value += weight * factor;
     add_points(by_stiffness, stiffness.by_nodes, result.by_nodes);
+    add_points(by_stiffness, stiffness.by_pin_point, result.by_pin_point);
     add_points(by_geometric, geometric.by_nodes, result.by_nodes);
     add_numbers(by_stiffness, stiffness.by_modulus, result.by_modulus);
     add_numbers(by_geometric, geometric.by_modulus, result.by_modulus);
@@ -70,7 +72,7 @@ ModeFunctional frequency_functional(
     const loads::LoadCase& held, const WeightedModes& modes) {
   constexpr double kTurn = 2.0 * std::numbers::pi;
   ModeFunctional result;
-  clear(mesh, materials.size(), result);
+  clear(mesh, materials.size(), held, result);
   result.by_density.assign(materials.size(), 0.0);
   for (std::size_t k = 0; k < modes.values.size(); ++k) {
     const double weight = modes.weights[static_cast<Eigen::Index>(k)];
@@ -81,7 +83,7 @@ ModeFunctional frequency_functional(
     const double square = std::pow(kTurn * frequency, 2);
     const VectorX& x = modes.shapes[k];
     const ModeFunctional inertia = inertia_work(mesh, materials, x);
-    const element::Functional stiffness =
+    const ModeFunctional stiffness =
         stiffness_work(mesh, materials, held, x,
                        vibration_reactions(mesh, materials, square, x));
     // df = d omega^2 / (2 (2 pi)^2 f).
@@ -90,6 +92,7 @@ ModeFunctional frequency_functional(
     const double by_inertia = -square * by_stiffness;
     result.value += weight * frequency;
     add_points(by_stiffness, stiffness.by_nodes, result.by_nodes);
+    add_points(by_stiffness, stiffness.by_pin_point, result.by_pin_point);
     add_points(by_inertia, inertia.by_nodes, result.by_nodes);
     add_numbers(by_stiffness, stiffness.by_modulus, result.by_modulus);
     add_numbers(by_inertia, inertia.by_density, result.by_density);

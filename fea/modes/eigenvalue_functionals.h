@@ -17,12 +17,12 @@ struct WeightedModes {
   const VectorX& weights;              // those of 0 cost nothing
 };
 
-/// sum weight_k factor_k with all its partial derivatives: by nodes and moduli
-/// with the modes' own motion, by displacement and temperature. From x^T (K +
-/// lambda K_g) x = 0: d lambda = -x^T (dK + lambda dK_g) x / x^T K_g x. `u`:
-/// the solution of the load case. Throws as geometric_work() and
+/// sum weight_k factor_k with all its partial derivatives: by nodes, moduli and
+/// pins' points with the modes' own motion, by displacement and temperature.
+/// From x^T (K + lambda K_g) x = 0: d lambda = -x^T (dK + lambda dK_g) x / x^T
+/// K_g x. `u`: the solution of the load case. Throws as geometric_work() and
 /// stiffness_work().
-element::Functional factor_functional(
+ModeFunctional factor_functional(
     const TetMesh& mesh, const std::vector<element::Material>& materials,
     const loads::LoadCase& load_case, const VectorX& u,
     const WeightedModes& modes);

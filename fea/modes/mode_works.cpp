@@ -11,6 +11,7 @@
 #include "fea/loads/body_load_gradient.h"
 #include "fea/loads/body_loads.h"
 #include "fea/loads/material_rates.h"
+#include "fea/supports/enforced.h"
 #include "fea/supports/springs.h"
 
 namespace meniscus::modes {
@@ -134,6 +135,7 @@ loads::LoadCase without_loads(const loads::LoadCase& held) {
   bare.name = held.name;
   bare.supports = held.supports;
   bare.springs = held.springs;
+  bare.pins = held.pins;
   return bare;
 }
 
@@ -214,20 +216,26 @@ ModeFunctional inertia_work(const TetMesh& mesh,
   return result;
 }
 
-element::Functional stiffness_work(
-    const TetMesh& mesh, const std::vector<element::Material>& materials,
-    const loads::LoadCase& held, const VectorX& x, const VectorX& reactions,
-    element::Derivatives derivatives) {
-  element::Functional result{
-      .value = x.dot(stiffness_times(mesh, materials, held, x))};
+ModeFunctional stiffness_work(const TetMesh& mesh,
+                              const std::vector<element::Material>& materials,
+                              const loads::LoadCase& held, const VectorX& x,
+                              const VectorX& reactions,
+                              element::Derivatives derivatives) {
+  ModeFunctional result;
+  result.value = x.dot(stiffness_times(mesh, materials, held, x));
   if (derivatives == element::Derivatives::None) {
     return result;
   }
   const loads::LoadCase bare = without_loads(held);
-  result.by_nodes = elastic::residual_gradient(mesh, materials, bare,
-                                               {x, reactions, x, reactions});
+  const loads::AdjointPair pair{x, reactions, x, reactions};
+  result.by_nodes = elastic::residual_gradient(mesh, materials, bare, pair);
   for (Vec3& by_node : result.by_nodes) {
     by_node = -by_node;  // it is that of -x^T K x
+  }
+  loads::LoadCase by_number;
+  supports::add_enforced_gradient(mesh, bare, pair, by_number);
+  for (const loads::RigidPin& pin : by_number.pins) {
+    result.by_pin_point.emplace_back(-pin.point);
   }
   const loads::MaterialGradient by =
       loads::material_gradient(mesh, materials, bare, x, x);

@@ -12,9 +12,12 @@
 
 namespace meniscus::modes {
 
-/// Of a number that depends on the densities, too.
+/// Of a number that depends on the densities and on rigid pins, too.
 struct ModeFunctional : element::Functional {
   std::vector<double> by_density;  // per region [value/density]
+  /// By the points of the load case's rigid pins, which those turn about that
+  /// fix some motion; of others 0 [value/length].
+  Points by_pin_point;
 };
 
 /// x^T K_g(u) x = int sigma(u) : (grad x^T grad x) dV, expansion of the load
@@ -36,11 +39,13 @@ ModeFunctional inertia_work(
     element::Derivatives derivatives = element::Derivatives::All);
 
 /// x^T K x, springs included, where x keeps to what the supports of `held`
-/// leave free as these turn with the nodes; its loads are not read. `reactions`
+/// leave free as these turn with the nodes, its pins' nodes to a rigid motion;
+/// its loads are not read. `reactions`
 /// to the mode, springs' forces apart, as buckling_reactions() and
-/// vibration_reactions() have them: they count along normals only. With
-/// derivatives by nodes and moduli. Throws as residual_gradient().
-element::Functional stiffness_work(
+/// vibration_reactions() have them: they count along normals and on pins only.
+/// With derivatives by nodes, moduli and pins' points. Throws as
+/// residual_gradient().
+ModeFunctional stiffness_work(
     const TetMesh& mesh, const std::vector<element::Material>& materials,
     const loads::LoadCase& held, const VectorX& x, const VectorX& reactions,
     element::Derivatives derivatives = element::Derivatives::All);

@@ -97,7 +97,8 @@ NaturalModes natural_modes(const elastic::ElasticModel& model,
   const equations::ElasticOperator op =
       model.operator_at(mesh, load_cases, load_case, options.materials);
   const loads::LoadCase& held = load_cases[load_case];
-  if ((!held.springs.empty() || !held.node_springs.empty()) &&
+  if (held.pins.empty() &&
+      (!held.springs.empty() || !held.node_springs.empty()) &&
       supports::free_motions(mesh, supports::held_directions(mesh, held))
               .cols() > 0) {
     return natural_modes(mesh, op.materials, held, options);

@@ -27,11 +27,15 @@ void require_agreement(const TetMesh& mesh, const loads::LoadCase& load_case,
   if (gap > kRoom * uncertainty * (u.norm() + std::abs(held.value))) {
     const Vec3& x = mesh.nodes[held.node];
     throw InvalidInput(fmt::format(
-        "load case '{}': the support on '{}' enforces a displacement of {:.4g} "
+        "load case '{}': {} enforces a displacement of {:.4g} "
         "at ({:.4g}, {:.4g}, {:.4g}), where another support has {:.4g}; leave "
-        "the surface free of one of them",
-        load_case.name, load_case.supports[held.support].surface, held.value,
-        x.x(), x.y(), x.z(), held.direction.dot(u)));
+        "the place free of one of them",
+        load_case.name,
+        held.support < 0
+            ? "a held node"
+            : fmt::format("the support on '{}'",
+                          load_case.supports[held.support].surface),
+        held.value, x.x(), x.y(), x.z(), held.direction.dot(u)));
   }
 }
 

@@ -7,10 +7,11 @@
 
 namespace meniscus::supports {
 
-/// What nodes are held at, 3 per node and 0 along free directions; on the nodes
-/// of pins that of their fixed motions. Empty where everything is held at 0
-/// [length]. Throws InvalidInput, naming load case, surface and place, where
-/// two supports enforce different displacements of one node.
+/// What nodes are held at by supports, held nodes and pins, 3 per node and 0
+/// along free directions; on the nodes of pins that of their fixed motions.
+/// Empty where everything is held at 0 [length]. Throws InvalidInput, naming
+/// load case, surface and place, where two supports enforce different
+/// displacements of one node.
 VectorX enforced_displacement(const TetMesh& mesh,
                               const loads::LoadCase& load_case);
 

@@ -69,7 +69,16 @@ void hold_node(const TetMesh& mesh, const loads::HeldNode& node,
         load_case.name, node.node, mesh.nodes.size(), node.direction.x(),
         node.direction.y(), node.direction.z()));
   }
-  held.push_back({node.node, node.direction / length, kExactDirection});
+  if (!std::isfinite(node.displacement)) {
+    throw InvalidInput(fmt::format(
+        "load case '{}': node {} is held at a displacement that is not a "
+        "finite number",
+        load_case.name, node.node));
+  }
+  held.push_back({.node = node.node,
+                  .direction = node.direction / length,
+                  .uncertainty = kExactDirection,
+                  .value = node.displacement});
 }
 
 void add_normals(const TetMesh& mesh, const loads::Support& support,

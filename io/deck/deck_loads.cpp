@@ -58,7 +58,8 @@ void DeckStepReader::boundary_line(const DeckLine& line) {
   const std::vector<std::string_view> fields = deck_fields(line.text);
   if (fields.size() < 2 || fields.size() > 4) {
     cards_.refuse(line.at, fmt::format("'{}' is no support; expected a node or "
-                                       "set, its first and last component",
+                                       "set, its first and last component, "
+                                       "and what they are held at if not 0",
                                        shown_field(line.text)));
   }
   std::array<bool, 3> fix{};
@@ -80,17 +81,20 @@ void DeckStepReader::boundary_line(const DeckLine& line) {
       fix[static_cast<std::size_t>(k) - 1] = true;
     }
   }
-  if (fields.size() > 3 && !fields[3].empty() &&
-      require_deck_number(cards_, line.at, fields[3], "the displacement") !=
-          0.0) {
-    cards_.refuse(line.at, fmt::format("*BOUNDARY: a displacement of {} is "
-                                       "enforced; only 0 is known",
-                                       shown_field(fields[3])));
+  const double displacement =
+      fields.size() > 3 && !fields[3].empty()
+          ? require_deck_number(cards_, line.at, fields[3], "the displacement")
+          : 0.0;
+  if (displacement != 0.0 && step_ == 0) {
+    cards_.refuse(line.at,
+                  "*BOUNDARY enforces a displacement before the first "
+                  "*STEP, where CalculiX knows only 0; enforce it in "
+                  "a step");
   }
   for (const int number : nodes_named(line.at, fields[0])) {
     for (int k = 0; k < 3; ++k) {
       if (fix[static_cast<std::size_t>(k)]) {
-        standing_.held.insert({number, k});
+        standing_.held[{number, k}] = displacement;
       }
     }
   }

@@ -18,6 +18,7 @@ enum class DeckProcedure { Static, Frequency, Buckling };
 struct ReadHold {
   int node = 0;  // from 0
   Vec3 direction = Vec3::UnitX();
+  double displacement = 0.0;  // that it is held at along it [length]
 };
 
 /// Pressure on one face of an element, inner faces too, positive into the

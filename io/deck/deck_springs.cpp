@@ -18,7 +18,7 @@ namespace {
 class SpringReader {
  public:
   SpringReader(const DeckCards& cards, const FrozenModel& frozen,
-               const std::set<NodeComponent>& held, ReadStep& step)
+               const std::map<NodeComponent, double>& held, ReadStep& step)
       : cards_(cards),
         model_(frozen.model),
         frozen_(frozen),
@@ -111,8 +111,13 @@ class SpringReader {
       } else if (node >= 0) {
         of_node.try_emplace(node, Vec3::Zero()).first->second[term.component] +=
             term.coefficient;
-      } else if (held_.count(where) == 0) {
+      } else if (const auto ground = held_.find(where); ground == held_.end()) {
         return;  // its ground follows
+      } else if (ground->second != 0.0) {
+        cards_.refuse(equation.at,
+                      "its spring's ground is held at a "
+                      "displacement that is not 0, which is not "
+                      "known");
       }
     }
     if (own_coefficient == 0.0 || of_node.empty()) {
@@ -153,7 +158,7 @@ class SpringReader {
   const DeckCards& cards_;
   const DeckModel& model_;
   const FrozenModel& frozen_;
-  const std::set<NodeComponent>& held_;
+  const std::map<NodeComponent, double>& held_;
   ReadStep& step_;
   std::vector<char> tied_;  // equations that belong to springs
   std::map<NodeComponent, std::vector<int>> loose_;  // equations, by components
@@ -163,7 +168,8 @@ class SpringReader {
 }  // namespace
 
 void put_deck_springs(const DeckCards& cards, const FrozenModel& frozen,
-                      const std::set<NodeComponent>& held, ReadStep& step) {
+                      const std::map<NodeComponent, double>& held,
+                      ReadStep& step) {
   SpringReader(cards, frozen, held, step).read();
 }
 

@@ -226,7 +226,7 @@ void DeckStepReader::end_step(const DeckCard& card) {
   }
   inside_ = false;
   ReadStep& step = deck_.steps.back();
-  put_holds(step);
+  put_holds(card, step);
   put_deck_springs(cards_, frozen_, standing_.held, step);
   if (step.procedure != DeckProcedure::Frequency) {
     put_forces(card, step);
@@ -236,11 +236,16 @@ void DeckStepReader::end_step(const DeckCard& card) {
   }
 }
 
-void DeckStepReader::put_holds(ReadStep& step) {
-  for (const auto& [number, component] : standing_.held) {
-    const int node = mesh_node(number);
+void DeckStepReader::put_holds(const DeckCard& card, ReadStep& step) {
+  for (const auto& [where, displacement] : standing_.held) {
+    const int node = mesh_node(where.first);
     if (node >= 0) {
-      step.holds.push_back({node, Vec3::Unit(component)});
+      step.holds.push_back({node, Vec3::Unit(where.second), displacement});
+    }
+    if (displacement != 0.0 && step.procedure != DeckProcedure::Static) {
+      cards_.refuse(card, fmt::format("node {} is held at a displacement that "
+                                      "is not 0; only *STATIC steps know that",
+                                      where.first));
     }
   }
   std::stable_sort(

@@ -40,7 +40,7 @@ using NodeComponent = std::pair<int, int>;  // number of a node, 0 to 2
 
 /// What stands between steps, by numbers of the deck.
 struct StandingLoads {
-  std::set<NodeComponent> held;
+  std::map<NodeComponent, double> held;  // at this displacement
   std::map<NodeComponent, StandingValue> forces;
   std::map<std::array<int, 2>, StandingValue> pressures;  // element, corner off
   std::vector<StandingBodyLoad> body;
@@ -88,7 +88,7 @@ class DeckStepReader {
   std::vector<int> nodes_named(const DeckPlace& at, std::string_view field);
   void press(const DeckPlace& at, int element, int off, double pressure);
 
-  void put_holds(ReadStep& step);
+  void put_holds(const DeckCard& card, ReadStep& step);
   void put_forces(const DeckCard& card, ReadStep& step);
   void put_pressures(ReadStep& step);
   void put_body_loads(ReadStep& step);
@@ -109,8 +109,9 @@ class DeckStepReader {
 };
 
 /// Adds the springs and oblique holds of the model that act in the step, where
-/// `held` are the components that it holds (internal).
+/// `held` are the components that it holds, and where (internal).
 void put_deck_springs(const DeckCards& cards, const FrozenModel& frozen,
-                      const std::set<NodeComponent>& held, ReadStep& step);
+                      const std::map<NodeComponent, double>& held,
+                      ReadStep& step);
 
 }  // namespace meniscus::deck

@@ -6,7 +6,7 @@
 #include "core/timer.h"
 #include "pipeline/case_data/response_kinds.h"
 #include "pipeline/forward/frozen_part.h"
-#include "pipeline/forward/responses.h"
+#include "pipeline/responses/responses.h"
 
 namespace meniscus::accuracy {
 
@@ -53,15 +53,15 @@ FinerFilm evaluate_finer_film(const forward::ForwardModel& model,
     // 3. Its figures.
     const TetMesh no_mesh;
     const equations::ElasticSolution no_solution;
-    result.responses = forward::respond_films(input,
-                                              {.inputs = inputs,
-                                               .mesh = no_mesh,
-                                               .solution = no_solution,
-                                               .excluded = {},
-                                               .film = &finer,
-                                               .film_state = &state,
-                                               .scans = &model.scans()},
-                                              responses);
+    result.responses = responses::respond_films(input,
+                                                {.inputs = inputs,
+                                                 .mesh = no_mesh,
+                                                 .solution = no_solution,
+                                                 .excluded = {},
+                                                 .film = &finer,
+                                                 .film_state = &state,
+                                                 .scans = &model.scans()},
+                                                responses);
   }));
   result.seconds = timer.seconds();
   return result;

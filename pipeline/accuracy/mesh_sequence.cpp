@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "pipeline/forward/forward_model.h"
 #include "pipeline/forward/stress_figures.h"
+#include "pipeline/forward/worst_cases.h"
 
 namespace meniscus::accuracy {
 
@@ -36,8 +37,7 @@ void add_mesh(const case_data::Case& input, const VectorX& design,
       return;
     }
     meshes.responses[m] = there.responses;
-    fields.stresses =
-        forward::part_stresses(fields.mesh, fields.inputs, fields.solution);
+    forward::find_stresses(input, fields);
     meshes.peaks[m] = forward::highest_readings(fields);
     if (with_eigen) {
       meshes.eigen[m] =

@@ -159,6 +159,9 @@ films::FilmSystem films_of(const Case& input, const CaseValues& values) {
     }
   }
   system.keep_facets = input.resolution.keep_facets;
+  for (const StepSolidEntry& solid : input.step_solids) {
+    system.solids.push_back(solid.spec);
+  }
   for (const CapEntry& cap : input.caps) {
     system.caps.push_back(cap.spec);
     if (cap.wetted) {

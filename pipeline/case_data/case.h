@@ -43,12 +43,14 @@ struct Case {
   std::vector<CurveEntry> curves;
   std::vector<FilmEntry> films;
   std::vector<CapEntry> caps;
-  std::vector<FeatureEntry> features;  // whose faces are among the caps
+  std::vector<FeatureEntry> features;       // whose faces are among the caps
+  std::vector<StepSolidEntry> step_solids;  // the same
   std::vector<BodyEntry> bodies;
   std::vector<WallEntry> walls;
   std::vector<FieldEntry> fields;
   std::vector<MaterialEntry> materials;
   std::vector<LoadCaseEntry> load_cases;
+  std::vector<DirectionsEntry> directions;  // of load cases, in their order
   std::vector<ResponseEntry> responses;
   Resolution resolution;
   ProcessEntry process;

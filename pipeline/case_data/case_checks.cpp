@@ -80,6 +80,12 @@ void check_use(const Case& input, CaseProblems& problems) {
     used_curves.insert(
         input.curves[static_cast<std::size_t>(pair.dropped)].name);
   }
+  for (const StepSolidEntry& solid : input.step_solids) {
+    used_curves.insert(solid.spec.frame);
+    for (const films::SolidSpec::Rim& rim : solid.spec.rims) {
+      used_curves.insert(rim.curve);
+    }
+  }
   for (const CurveEntry& curve : input.curves) {
     if (curve.copy.of >= 0) {
       used_curves.insert(

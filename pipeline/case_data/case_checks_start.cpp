@@ -1,4 +1,4 @@
-/// Checks of what films of facets start from, and of features in their way.
+/// Checks of what films of facets start from, and of solids in their way.
 #include <algorithm>
 #include <set>
 
@@ -59,28 +59,46 @@ SourceLine line_of_start(const Case& input, const std::string& message) {
 
 namespace {
 
-/// The feature that a face belongs to, by index; -1: none.
-int feature_of(const Case& input, const std::string& face) {
-  for (std::size_t k = 0; k < input.features.size(); ++k) {
-    if (face.rfind(input.features[k].name + "/", 0) == 0) {
+/// A feature or a STEP solid.
+struct FacedSolid {
+  std::string name;
+  SourceLine line = 0;
+};
+
+std::vector<FacedSolid> faced_solids(const Case& input) {
+  std::vector<FacedSolid> result;
+  for (const FeatureEntry& feature : input.features) {
+    result.push_back({feature.name, feature.line});
+  }
+  for (const StepSolidEntry& solid : input.step_solids) {
+    result.push_back({solid.spec.name, solid.line});
+  }
+  return result;
+}
+
+/// The one that a face belongs to, by index; -1: none.
+int solid_of(const std::vector<FacedSolid>& solids, const std::string& face) {
+  for (std::size_t k = 0; k < solids.size(); ++k) {
+    if (face.rfind(solids[k].name + "/", 0) == 0) {
       return static_cast<int>(k);
     }
   }
   return -1;
 }
 
-/// Features whose faces cross.
+/// Those whose faces cross.
 void check_overlaps(const Case& input, const SurfaceMesh& start,
                     CaseProblems& problems) {
   SurfaceMesh faces;
   faces.points = start.points;
   faces.labels = start.labels;
-  std::vector<int> feature;  // per label
+  const std::vector<FacedSolid> solids = faced_solids(input);
+  std::vector<int> solid;  // per label
   for (const std::string& label : start.labels) {
-    feature.push_back(feature_of(input, label));
+    solid.push_back(solid_of(solids, label));
   }
   for (std::size_t f = 0; f < start.facets.size(); ++f) {
-    if (feature[start.facet_label[f]] >= 0) {
+    if (solid[start.facet_label[f]] >= 0) {
       faces.facets.push_back(start.facets[f]);
       faces.facet_label.push_back(start.facet_label[f]);
     }
@@ -89,14 +107,14 @@ void check_overlaps(const Case& input, const SurfaceMesh& start,
   for (const Finding& finding : check_surface(faces)) {
     std::set<int> both;
     for (const std::string& surface : finding.surfaces) {
-      both.insert(feature_of(input, surface));
+      both.insert(solid_of(solids, surface));
     }
     if (finding.kind != FindingKind::Crossing || both.size() != 2 ||
         !told.insert({*both.begin(), *both.rbegin()}).second) {
       continue;
     }
-    const FeatureEntry& first = input.features[*both.begin()];
-    const FeatureEntry& second = input.features[*both.rbegin()];
+    const FacedSolid& first = solids[*both.begin()];
+    const FacedSolid& second = solids[*both.rbegin()];
     problems.add(second.line,
                  fmt::format("solids '{}' and '{}' overlap near ({:.4g}, "
                              "{:.4g}, {:.4g}); move them apart, or let a film "

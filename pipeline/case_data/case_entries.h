@@ -11,6 +11,7 @@
 
 #include "core/math/expression.h"
 #include "core/math/measure.h"
+#include "core/math/worst_direction.h"
 #include "evolve/films/film_system.h"
 #include "evolve/scan/scan.h"
 #include "evolve/walls/thicken.h"
@@ -119,7 +120,7 @@ struct WettedWall {
 struct CapEntry {
   films::CapSpec spec;  // wall filled in by evaluate()
   std::optional<WettedWall> wetted;
-  bool is_file = false;  // else a flat disk
+  bool is_file = false;  // of facets or a STEP solid; else a flat disk
   SourceLine line = 0;
 };
 
@@ -154,6 +155,20 @@ struct FeatureEntry {
   bool round = false;                   // of flange
   SourceLine line = 0;
 };
+
+/// A solid of a STEP file as it is: its faces, solids NAME/FACE, and the curves
+/// of its rims are entries of their own.
+struct StepSolidEntry {
+  films::SolidSpec spec;
+  std::vector<int> faces;  // those that are there: not open
+  SourceLine line = 0;
+};
+
+/// "NAME/FACE".
+inline std::string face_name(const StepSolidEntry& solid, int face) {
+  return solid.spec.name + "/" +
+         solid.spec.shape->faces[static_cast<std::size_t>(face)].name;
+}
 
 inline constexpr int kVoid = -1;
 
@@ -212,7 +227,8 @@ enum class LoadKind {
   Traction,
   Gravity,
   Spin,
-  Temperature
+  Temperature,
+  Preload  // of a bolt: two remote loads in balance
 };
 
 /// How surfaces take a force or a moment.
@@ -226,16 +242,27 @@ enum class LoadPath {
 struct LoadEntry {
   LoadKind kind = LoadKind::Force;
   LoadPath by = LoadPath::Spread;  // of forces and moments
-  loads::Surfaces surfaces;
-  QuantityVector vector;  // force, gravity, axis of spin
+  loads::Surfaces surfaces;        // of a preload the seat under the head
+  loads::Surfaces thread;          // of a preload
+  QuantityVector vector;           // force, gravity, axis of spin or of a bolt
   QuantityVector moment;
-  QuantityVector at;                   // the remote point; on the axis of spin
+  QuantityVector at;                   // the remote point; on such an axis
   bool has_at = false;                 // a bearing's may be left out
   std::optional<QuantityVector> axis;  // of a bearing
   PlaceQuantity place;                 // pressure, temperature
   std::array<PlaceQuantity, 3> traction;
-  Quantity number;  // rate of spin, reference temperature
+  Quantity number;               // rate of spin, reference temperature, tension
+  std::optional<Quantity> size;  // of a force from any direction in the cone
+  Cone cone;
   SourceLine line = 0;
+};
+
+/// A load of given size from any direction in a cone: three of the case's load
+/// cases, NAME_x, NAME_y and NAME_z, are that size along x, y and z.
+struct DirectionsEntry {
+  std::string name;
+  int first = 0;  // index of NAME_x
+  Cone cone;
 };
 
 /// The numbers of a support are here, not in its struct.
@@ -331,7 +358,10 @@ struct ResponseEntry {
   std::string surface;
   QuantityVector direction;             // an axis for Rotation
   std::optional<QuantityVector> point;  // on the axis of Inertia
-  int load_case = 0;            // index; of Frequency also AnalysisEntry::kFree
+  int load_case = 0;  // index; of Frequency also AnalysisEntry::kFree
+  /// Of the worst direction in this cone: load_case and the two after it are
+  /// the unit loads (DirectionsEntry).
+  std::optional<Cone> worst_in;
   std::vector<int> load_cases;  // of Fatigue the two: indices
   std::optional<PlaceQuantity> weight;
   double power = 8.0;

@@ -83,8 +83,43 @@ loads::RigidPin pin_of(const PinEntry& entry, const CaseValues& values) {
   return pin;
 }
 
+/// Of a tightened bolt: pressed into the seat and pulled from the thread, as
+/// much about any point.
+void add_preload(const LoadEntry& load, const CaseValues& values,
+                 loads::LoadCase& result) {
+  values.positive(load.number);
+  const Dual1 tension = values.dual(load.number);
+  std::array<Dual1, 3> axis;
+  Dual1 square(0.0);
+  for (std::size_t k = 0; k < 3; ++k) {
+    axis[k] = values.dual(load.vector[k]);
+    square = square + axis[k] * axis[k];
+  }
+  if (!(square.value > 0.0)) {
+    values.at(
+        load.vector[0], [](double) { return false; },
+        "part of a direction with a length");
+    return;
+  }
+  Vec3 pull;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Dual1 force = tension * axis[k] / sqrt(square);
+    pull[static_cast<Eigen::Index>(k)] =
+        values.are_rates() ? (force.varies ? force.gradient[0] : 0.0)
+                           : force.value;
+  }
+  const Vec3 at = values.at(load.at);
+  result.remote_loads.push_back(
+      {.surfaces = load.surfaces, .point = at, .force = -pull});
+  result.remote_loads.push_back(
+      {.surfaces = load.thread, .point = at, .force = pull});
+}
+
 void add_load(const LoadEntry& load, const CaseValues& values,
               loads::LoadCase& result) {
+  if (load.size) {
+    values.positive(*load.size);
+  }
   if (load.by == LoadPath::Bearing) {
     result.bearings.push_back(
         {.surfaces = load.surfaces, .force = values.at(load.vector)});
@@ -134,6 +169,9 @@ void add_load(const LoadEntry& load, const CaseValues& values,
     case LoadKind::Spin:
       result.spin = loads::Spin{values.at(load.at), values.at(load.vector),
                                 values.at(load.number)};
+      break;
+    case LoadKind::Preload:
+      add_preload(load, values, result);
       break;
     case LoadKind::Temperature: {
       loads::Temperature temperature{.reference = values.at(load.number)};

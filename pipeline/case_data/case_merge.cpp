@@ -158,6 +158,12 @@ void merge_curves(Case& input, CaseProblems& problems) {
     rename(kept, "films." + film.spec.name, film.line, film.spec.curves,
            problems);
   }
+  for (StepSolidEntry& solid : input.step_solids) {
+    for (films::SolidSpec::Rim& rim : solid.spec.rims) {
+      const auto at = kept.find(rim.curve);
+      rim.curve = at == kept.end() ? rim.curve : at->second;
+    }
+  }
   for (CapEntry& cap : input.caps) {
     std::vector<std::string> names = cap.spec.curves();
     rename(kept, "solids." + cap.spec.name, cap.line, names, problems);

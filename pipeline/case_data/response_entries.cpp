@@ -47,6 +47,31 @@ bool is_extreme(const Case& input, int response) {
                      [&](int other) { return is_extreme(input, other); });
 }
 
+bool knows_worst_direction(const ResponseEntry& entry) {
+  switch (entry.kind) {
+    case ResponseKind::MeanDisplacement:
+    case ResponseKind::Rotation:
+    case ResponseKind::Compliance:
+    case ResponseKind::StrainEnergy:
+      return true;
+    case ResponseKind::StressRatio:
+      return entry.stress == StressMeasure::VonMises;
+    default:
+      return false;
+  }
+}
+
+std::size_t shown_load_case(const Case& input, const ResponseEntry& entry) {
+  if (!entry.worst_in) {
+    return static_cast<std::size_t>(entry.load_case);
+  }
+  const auto of = std::find_if(
+      input.directions.begin(), input.directions.end(),
+      [&](const DirectionsEntry& d) { return d.first == entry.load_case; });
+  return input.load_cases.size() +
+         static_cast<std::size_t>(of - input.directions.begin());
+}
+
 int response_index(const Case& input, const std::string& name) {
   int index = 0;
   while (input.responses[static_cast<std::size_t>(index)].name != name) {

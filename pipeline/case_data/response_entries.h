@@ -21,6 +21,14 @@ bool has_derivatives(const Case& input, int response);
 /// such a response.
 bool is_extreme(const Case& input, int response);
 
+/// The worst direction of a load is known for it without trial: a response
+/// that is linear in the load, or quadratic at each place.
+bool knows_worst_direction(const ResponseEntry& entry);
+
+/// Which of the load cases with shown ones behind them (forward::find_stresses)
+/// has the peak of stress that a response is of.
+std::size_t shown_load_case(const Case& input, const ResponseEntry& entry);
+
 /// Position of a response of the case; it must exist.
 int response_index(const Case& input, const std::string& name);
 

@@ -84,7 +84,8 @@ TetMesh only_elements(const TetMesh& mesh, const std::vector<int>& elements) {
 
 void hold(const deck::ReadStep& step, loads::LoadCase& load_case) {
   for (const deck::ReadHold& held : step.holds) {
-    load_case.held_nodes.push_back({held.node, held.direction});
+    load_case.held_nodes.push_back(
+        {held.node, held.direction, held.displacement});
   }
   for (const deck::ReadSpring& spring : step.springs) {
     load_case.node_springs.push_back(
@@ -129,10 +130,11 @@ loads::LoadCase load_case_of(const deck::ReadStep& step, const TetMesh& mesh,
   }
   at_place(step.place, [&] {
     load(step, mesh, materials, load_case);
-    if (loads::nodal_forces(mesh, load_case, materials).isZero(0.0)) {
+    if (!loads::enforces(load_case) &&
+        loads::nodal_forces(mesh, load_case, materials).isZero(0.0)) {
       throw InvalidInput(fmt::format(
           "step '{}' has no load that acts; give one by *CLOAD, *DLOAD or "
-          "*DSLOAD",
+          "*DSLOAD, or enforce a displacement by *BOUNDARY",
           step.name));
     }
     supports::check_restraints(mesh, load_case);

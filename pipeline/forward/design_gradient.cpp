@@ -28,7 +28,7 @@ struct BackwardCase {
 /// A response that is not made of others, on its way back through the stages.
 struct Backward {
   std::size_t response = 0;
-  ResponsePartials partials;
+  responses::ResponsePartials partials;
   std::vector<BackwardCase> cases;  // of the partials'
   std::vector<double> by_density;   // per region, of all stages
   std::vector<double> by_modulus;   // likewise; both empty: 0
@@ -47,8 +47,8 @@ class Adjoint {
   bool solve_adjoints(DesignGradient& result);
   bool materials_move() const;
   void through_materials(Backward& backward) const;
-  void through_equations(const CasePartials& partials, BackwardCase& backward,
-                         Points& by_nodes) const;
+  void through_equations(const responses::CasePartials& partials,
+                         BackwardCase& backward, Points& by_nodes) const;
   void through_mesh(Backward& backward) const;
   void through_film();
   double rate(const Backward& backward,
@@ -88,11 +88,11 @@ bool Adjoint::solve_adjoints(DesignGradient& result) {
   std::vector<int> load_cases;
   std::vector<VectorX> right;
   for (Backward& backward : backwards_) {
-    for (const CasePartials& partials : backward.partials.cases) {
+    for (const responses::CasePartials& partials : backward.partials.cases) {
       backward.cases.push_back({.load_case = partials.load_case});
     }
     for (std::size_t k = 0; k < backward.cases.size(); ++k) {
-      const CasePartials& partials = backward.partials.cases[k];
+      const responses::CasePartials& partials = backward.partials.cases[k];
       BackwardCase& back = backward.cases[k];
       if (const double factor = partials.self_adjoint; factor != 0.0) {
         const auto c = static_cast<std::size_t>(partials.load_case);
@@ -100,21 +100,33 @@ bool Adjoint::solve_adjoints(DesignGradient& result) {
         back.adjoint_reactions = factor * solution.reactions[c];
         continue;
       }
+      if (partials.of_first) {
+        continue;
+      }
       open.push_back(&back);
       load_cases.push_back(partials.load_case);
       right.push_back(partials.by_displacement);
     }
   }
-  if (open.empty()) {
-    return true;
+  equations::AdjointSolution adjoint;
+  if (!open.empty()) {
+    adjoint = in_.part.elasticity->solve_adjoints(in_.elastic_state, load_cases,
+                                                  right);
   }
-  equations::AdjointSolution adjoint =
-      in_.part.elasticity->solve_adjoints(in_.elastic_state, load_cases, right);
   result.solves += static_cast<int>(open.size());
   result.failure = adjoint.failure;
   for (std::size_t k = 0; k < open.size() && !result.failure; ++k) {
     open[k]->lambda = std::move(adjoint.lambda[k]);
     open[k]->adjoint_reactions = std::move(adjoint.reactions[k]);
+  }
+  for (Backward& backward : backwards_) {
+    for (std::size_t k = 0; k < backward.cases.size(); ++k) {
+      if (const auto factor = backward.partials.cases[k].of_first) {
+        const BackwardCase& first = backward.cases.front();
+        backward.cases[k].lambda = *factor * first.lambda;
+        backward.cases[k].adjoint_reactions = *factor * first.adjoint_reactions;
+      }
+    }
   }
   return !result.failure;
 }
@@ -146,8 +158,8 @@ void add(const std::vector<double>& more, std::vector<double>& sum) {
 /// lambda . (f - K u) by the materials, and the loads' part of the response
 /// itself.
 void Adjoint::through_materials(Backward& backward) const {
-  const ResponseContext& fields = in_.context;
-  const ResponsePartials& partials = backward.partials;
+  const responses::ResponseContext& fields = in_.context;
+  const responses::ResponsePartials& partials = backward.partials;
   add(partials.by_density, backward.by_density);
   add(partials.by_modulus, backward.by_modulus);
   for (std::size_t k = 0; k < backward.cases.size(); ++k) {
@@ -170,10 +182,10 @@ void Adjoint::through_materials(Backward& backward) const {
 }
 
 /// `by_nodes` receives what the equations change the response by.
-void Adjoint::through_equations(const CasePartials& partials,
+void Adjoint::through_equations(const responses::CasePartials& partials,
                                 BackwardCase& backward,
                                 Points& by_nodes) const {
-  const ResponseContext& fields = in_.context;
+  const responses::ResponseContext& fields = in_.context;
   const auto c = static_cast<std::size_t>(backward.load_case);
   const loads::LoadCase& load_case = fields.inputs.load_cases[c];
   const loads::AdjointPair pair{fields.solution.displacements[c],
@@ -197,8 +209,8 @@ void Adjoint::through_equations(const CasePartials& partials,
 }
 
 void Adjoint::through_mesh(Backward& backward) const {
-  const ResponseContext& fields = in_.context;
-  ResponsePartials& partials = backward.partials;
+  const responses::ResponseContext& fields = in_.context;
+  responses::ResponsePartials& partials = backward.partials;
   for (std::size_t k = 0; k < backward.cases.size(); ++k) {
     through_equations(partials.cases[k], backward.cases[k], partials.by_nodes);
   }
@@ -227,12 +239,16 @@ void Adjoint::through_film() {
 /// The response's derivative by the variable that `rates` belong to.
 double Adjoint::rate(const Backward& backward,
                      const case_data::CaseRates& rates) const {
-  const ResponsePartials& partials = backward.partials;
+  const responses::ResponsePartials& partials = backward.partials;
   double sum = in_.context.film->rate(
       backward.film, in_.context.inputs.film_system, rates.film_system);
   sum +=
       partials.by_direction.dot(rates.responses[backward.response].direction);
   sum += partials.by_point.dot(rates.responses[backward.response].point);
+  for (std::size_t p = 0; p < partials.by_pin_point.size(); ++p) {
+    const loads::LoadCase& held = rates.load_cases[entry(backward).load_case];
+    sum += partials.by_pin_point[p].dot(held.pins[p].point);
+  }
   for (const BackwardCase& back : backward.cases) {
     sum += loads::load_rate(*back.loads, rates.load_cases[back.load_case]);
   }
@@ -246,9 +262,10 @@ double Adjoint::rate(const Backward& backward,
     const walls::WallSpec& wall = rates.walls[static_cast<std::size_t>(w)];
     sum += backward.by_thickness[w] * wall.number.value_or(0.0);
   }
-  return sum + place_rate(entry(backward),
-                          in_.context.inputs.responses[backward.response],
-                          rates.responses[backward.response], in_.context);
+  return sum +
+         responses::place_rate(entry(backward),
+                               in_.context.inputs.responses[backward.response],
+                               rates.responses[backward.response], in_.context);
 }
 
 /// `rates`: of the responses that are not made of others; receives those.
@@ -275,10 +292,10 @@ DesignGradient Adjoint::run(const std::vector<int>& wanted) {
   for (std::size_t k = 0; k < needed.size(); ++k) {
     const case_data::ResponseEntry& response = input.responses[k];
     if (needed[k] != 0 && !case_data::is_composed(response)) {
-      backwards_.push_back(
-          {.response = k,
-           .partials = partials_of(response, in_.context.inputs.responses[k],
-                                   in_.context, element::Derivatives::All)});
+      backwards_.push_back({.response = k,
+                            .partials = responses::partials_of(
+                                response, in_.context.inputs.responses[k],
+                                in_.context, element::Derivatives::All)});
     }
   }
   // K lambda = dJ/du, one solve per response that depends on u.

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "pipeline/case_data/case.h"
-#include "pipeline/forward/responses.h"
+#include "pipeline/responses/responses.h"
 
 namespace meniscus::forward {
 
@@ -23,7 +23,7 @@ struct FrozenPart;
 /// The evaluated design, on loan but for the context.
 struct GradientInput {
   const FrozenPart& part;
-  ResponseContext context;
+  responses::ResponseContext context;
   const VectorX& responses;  // their values
   const equations::ElasticState& elastic_state;
 };

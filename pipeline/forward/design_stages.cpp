@@ -18,14 +18,14 @@ namespace {
 std::optional<Failure> find_modes(const FrozenPart& part,
                                   StagedDesign& staged) {
   const StageMeter meter;
-  ResponseModes& modes = staged.fields.response_modes;
-  modes = find_response_modes({.input = part.input,
-                               .inputs = staged.fields.inputs,
-                               .mesh = staged.fields.mesh,
-                               .solution = staged.fields.solution,
-                               .model = *part.elasticity,
-                               .base = &part.base_modes,
-                               .monitor = part.monitor});
+  responses::ResponseModes& modes = staged.fields.response_modes;
+  modes = responses::find_response_modes({.input = part.input,
+                                          .inputs = staged.fields.inputs,
+                                          .mesh = staged.fields.mesh,
+                                          .solution = staged.fields.solution,
+                                          .model = *part.elasticity,
+                                          .base = &part.base_modes,
+                                          .monitor = part.monitor});
   meter.add_to(staged.evaluation.seconds.fea, staged.evaluation.operations.fea);
   return modes.failure;
 }
@@ -119,10 +119,10 @@ bool compute_responses(const FrozenPart& part, StagedDesign& staged) {
     return false;
   }
   try {
-    result.responses =
-        respond(part.input,
-                part.context(fields.inputs, staged.adjoint.film, fields.mesh,
-                             fields.solution, fields.response_modes));
+    result.responses = responses::respond(
+        part.input,
+        part.context(fields.inputs, staged.adjoint.film, fields.mesh,
+                     fields.solution, fields.response_modes));
   } catch (const InvalidInput& error) {  // an expression of place
     result.failure = Failure{FailureKind::NotANumber, error.what()};
     return false;

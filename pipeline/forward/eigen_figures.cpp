@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/timer.h"
+#include "pipeline/forward/worst_cases.h"
 
 namespace meniscus::forward {
 
@@ -73,7 +74,7 @@ FrequencyFigures frequencies_of(const case_data::AnalysisEntry& analysis,
                                           options);
             })};
   }
-  const std::vector<loads::LoadCase>& cases = fields.inputs.load_cases;
+  const std::vector<loads::LoadCase> cases = solved_load_cases(fields);
   return {cases[static_cast<std::size_t>(held)].name,
           or_failure<modes::NaturalModes>([&] {
             return modes::natural_modes(model, fields.mesh, cases, held,
@@ -86,7 +87,7 @@ modes::BucklingFigures buckling_of(const EvaluationFields& fields,
                                    const elastic::ElasticModel& model,
                                    std::size_t c,
                                    const modes::BucklingOptions& options) {
-  const std::vector<loads::LoadCase>& cases = fields.inputs.load_cases;
+  const std::vector<loads::LoadCase> cases = solved_load_cases(fields);
   const VectorX& u = fields.solution.displacements[c];
   modes::BucklingFigures figures{.load_case = cases[c].name,
                                  .modes = or_failure<modes::BucklingModes>([&] {
@@ -109,15 +110,13 @@ EigenFigures eigen_figures(const case_data::Case& input,
                            Monitor* monitor) {
   const Timer timer;
   const case_data::AnalysisEntry& analysis = input.analysis;
-  const std::vector<loads::LoadCase>& cases = fields.inputs.load_cases;
+  const std::vector<loads::LoadCase> cases = solved_load_cases(fields);
   EigenFigures figures;
   modes::BucklingOptions options =
       buckling_options(analysis, model.base_solution().report, monitor);
   options.materials = &fields.inputs.materials;
-  std::vector<std::string> pinned;
   for (std::size_t c = 0; c < cases.size() && options.count > 0; ++c) {
-    if (!cases[c].pins.empty() && !analysis.buckling) {
-      pinned.push_back(cases[c].name);
+    if (is_unit_load(fields, c) && !analysis.buckling) {
       continue;
     }
     figures.buckling.push_back(buckling_of(fields, model, c, options));
@@ -127,10 +126,13 @@ EigenFigures eigen_figures(const case_data::Case& input,
         "no buckling factors: the solver petsc keeps its matrix in other "
         "processes; another solver, or a coarser mesh with one, gives them";
   }
-  if (!pinned.empty()) {
-    figures.remark =
-        fmt::format("no buckling factors of '{}': they do not know rigid pins",
-                    fmt::join(pinned, "', '"));
+  for (const WorstCase& worst : fields.worst_cases) {
+    if (!analysis.buckling && figures.remark.empty()) {
+      figures.remark = fmt::format(
+          "no buckling factors of '{}', whose load comes from any direction; "
+          "analysis.buckling gives those of its unit loads",
+          fields.inputs.load_cases[worst.load_case].name);
+    }
   }
   if (analysis.frequencies > 0) {
     figures.frequencies = frequencies_of(analysis, fields, model, monitor);

@@ -28,9 +28,9 @@ struct EigenFigures {
 
 /// What the case's [analysis] asks for; without it the first buckling factor of
 /// every load case up to 1000, to three digits, or a remark where the solver
-/// keeps its matrix in other processes or rigid pins are in the way. `model`
-/// must know the fields' mesh. An answer that did not come is a failure within.
-/// Throws Interrupted.
+/// keeps its matrix in other processes or loads come from any direction.
+/// `model` must know the fields' mesh. An answer that did not come is a failure
+/// within. Throws Interrupted.
 EigenFigures eigen_figures(const case_data::Case& input,
                            const EvaluationFields& fields,
                            const elastic::ElasticModel& model,

@@ -16,7 +16,8 @@
 #include "pipeline/case_data/composed_responses.h"
 #include "pipeline/case_data/response_entries.h"
 #include "pipeline/case_data/response_kinds.h"
-#include "pipeline/forward/response_partials.h"
+#include "pipeline/forward/worst_cases.h"
+#include "pipeline/responses/response_partials.h"
 
 namespace meniscus::forward {
 
@@ -176,14 +177,14 @@ double ResponseErrors::smoothing_error(std::size_t r) const {
           .value;
     };
   } else if (response.kind == Kind::Groove) {
-    smoothing = kGrooveSmoothing;
+    smoothing = responses::kGrooveSmoothing;
     value = [&](double s) {
       return functionals::groove_functional(fields_.mesh, 1.0 / s,
                                             element::Derivatives::None)
           .value;
     };
   } else if (response.kind == Kind::Gap) {
-    smoothing = response.smoothing.value_or(kGapSmoothing * edge);
+    smoothing = response.smoothing.value_or(responses::kGapSmoothing * edge);
     value = [&](double s) {
       return frozen::gap_between(fields_.film,
                                  fields_.film.label_of(response.films[0]),
@@ -209,7 +210,7 @@ std::vector<std::vector<Dual>> ResponseErrors::duals() {
     const case_data::ErrorSource estimate =
         case_data::row_of(response.kind).error;
     if (estimate == case_data::ErrorSource::ByReadings) {
-      error(r) = peak_error(static_cast<std::size_t>(response.load_case));
+      error(r) = peak_error(case_data::shown_load_case(input_, response));
     } else if (estimate == case_data::ErrorSource::BySmoothing) {
       error(r) = smoothing_error(r);
     } else if (estimate == case_data::ErrorSource::Unknown) {
@@ -218,12 +219,12 @@ std::vector<std::vector<Dual>> ResponseErrors::duals() {
     if (estimate != case_data::ErrorSource::ByDual) {
       continue;
     }
-    ResponsePartials partials =
-        partials_of(response, fields_.inputs.responses[r],
-                    {fields_.inputs, fields_.mesh, fields_.solution,
-                     fields_.exclusion.what},
-                    element::Derivatives::All);
-    for (CasePartials& by : partials.cases) {
+    responses::ResponsePartials partials =
+        responses::partials_of(response, fields_.inputs.responses[r],
+                               {fields_.inputs, fields_.mesh, fields_.solution,
+                                fields_.exclusion.what},
+                               element::Derivatives::All);
+    for (responses::CasePartials& by : partials.cases) {
       const auto k = static_cast<std::size_t>(by.load_case);
       if (by.self_adjoint != 0.0) {  // the dual is the solution itself
         const double norm = fields_.stresses[k].error.error;
@@ -240,7 +241,7 @@ std::vector<std::vector<Dual>> ResponseErrors::duals() {
 bool ResponseErrors::solve(const std::vector<std::vector<Dual>>& duals,
                            std::size_t round,
                            const elastic::ElasticModel& model) {
-  std::vector<loads::LoadCase> loads = fields_.inputs.load_cases;
+  std::vector<loads::LoadCase> loads = solved_load_cases(fields_);
   std::vector<double> scale(loads.size(), 0.0);  // 0: no dual left
   for (std::size_t k = 0; k < loads.size(); ++k) {
     if (round < duals[k].size()) {

@@ -22,7 +22,7 @@ ForwardModel::ForwardModel(const case_data::Case& input,
   refuse_walls(input);
   require_solver(input);
   part_->input = input;
-  part_->scans = read_scans(input);
+  part_->scans = responses::read_scans(input);
   part_->monitor = options.monitor;
   freeze_part(options, *part_);
 }
@@ -112,7 +112,7 @@ SurfaceMesh ForwardModel::boundary(const case_data::EvaluatedCase& inputs,
                : part_->film->boundary(film_points);
 }
 
-const Scans& ForwardModel::scans() const { return part_->scans; }
+const responses::Scans& ForwardModel::scans() const { return part_->scans; }
 
 const elastic::ElasticModel& ForwardModel::elasticity() const {
   return *part_->elasticity;

@@ -16,9 +16,9 @@
 #include "pipeline/forward/design_gradient.h"
 #include "pipeline/forward/exclusion.h"
 #include "pipeline/forward/part_stress.h"
-#include "pipeline/forward/response_modes.h"
-#include "pipeline/forward/scans.h"
 #include "pipeline/forward/stage_meter.h"
+#include "pipeline/responses/response_modes.h"
+#include "pipeline/responses/scans.h"
 
 namespace meniscus::forward {
 
@@ -49,6 +49,13 @@ struct ModeShape {
   VectorX shape;
 };
 
+/// A load from any direction as it is shown (worst_cases.h).
+struct WorstCase {
+  int load_case = 0;  // index of the load case that shows it
+  int first = 0;      // of its three unit loads
+  Vec3 direction = Vec3::UnitZ();
+};
+
 /// The film of one design of a study's history, on the model's triangulation.
 struct FilmFrame {
   int evaluation = 0;  // its number in the database
@@ -66,10 +73,11 @@ struct EvaluationFields {
   QuadraticSurface surface;       // as meshed
   TetMesh mesh;                   // ten-node
   equations::ElasticSolution solution;
-  ResponseModes response_modes;      // that the responses take
-  std::vector<PartStress> stresses;  // per load case; found once, at the end
-  std::vector<ModeShape> modes;      // that the case asks for; the same
-  std::vector<FilmFrame> history;    // of the study, by evaluation; the same
+  responses::ResponseModes response_modes;  // that the responses take
+  std::vector<PartStress> stresses;    // per load case; found once, at the end
+  std::vector<WorstCase> worst_cases;  // behind the load cases; the same
+  std::vector<ModeShape> modes;        // that the case asks for; the same
+  std::vector<FilmFrame> history;      // of the study, by evaluation; the same
   case_data::EvaluatedCase inputs;
   Exclusion exclusion;      // the model's
   double start_edge = 0.0;  // of the start that the model's film was found from
@@ -133,7 +141,7 @@ class ForwardModel {
                        const Points& film_points) const;
 
   /// What its responses compare films with.
-  const Scans& scans() const;
+  const responses::Scans& scans() const;
 
   /// The elasticity that evaluate() solves with.
   const elastic::ElasticModel& elasticity() const;

@@ -182,13 +182,13 @@ bool freeze_elasticity(const case_data::EvaluatedCase& inputs, Monitor& monitor,
 bool freeze_modes(const case_data::EvaluatedCase& inputs, Monitor& monitor,
                   FrozenPart& part) {
   const StageMeter meter;
-  part.base_modes =
-      find_response_modes({.input = part.input,
-                           .inputs = inputs,
-                           .mesh = part.base_mesh,
-                           .solution = part.elasticity->base_solution(),
-                           .model = *part.elasticity,
-                           .monitor = &monitor});
+  part.base_modes = responses::find_response_modes(
+      {.input = part.input,
+       .inputs = inputs,
+       .mesh = part.base_mesh,
+       .solution = part.elasticity->base_solution(),
+       .model = *part.elasticity,
+       .monitor = &monitor});
   meter.add_to(part.start.seconds.fea, part.start.operations.fea);
   part.start.failure = part.base_modes.failure;
   return !part.start.failure;
@@ -196,7 +196,7 @@ bool freeze_modes(const case_data::EvaluatedCase& inputs, Monitor& monitor,
 
 bool freeze_pairs(FrozenPart& part) {
   try {
-    part.pairs = thickness_pairs_of(part.input, part.base_mesh);
+    part.pairs = responses::thickness_pairs_of(part.input, part.base_mesh);
   } catch (const InvalidInput& error) {  // a solid that is thin nowhere
     part.start.failure = Failure{FailureKind::NotANumber, error.what()};
   }
@@ -211,7 +211,7 @@ AdaptedState adapted_state(const case_data::EvaluatedCase& inputs,
   fields.solution = part.elasticity->base_solution();
   fields.stresses = part_stresses(fields.mesh, inputs, fields.solution);
   fields.exclusion = part.exclusion;
-  const VectorX values = respond(
+  const VectorX values = responses::respond(
       part.input, part.context(inputs, part.film->reference(), fields.mesh,
                                fields.solution, part.base_modes));
   return {.tet = part.start.tet,
@@ -377,11 +377,10 @@ SurfaceGradient FrozenPart::to_surface(const case_data::EvaluatedCase& inputs,
   return {std::move(gradient.film), std::move(gradient.thickness)};
 }
 
-ResponseContext FrozenPart::context(const case_data::EvaluatedCase& inputs,
-                                    const settle::FilmState& film_state,
-                                    const TetMesh& mesh,
-                                    const equations::ElasticSolution& solution,
-                                    const ResponseModes& modes) const {
+responses::ResponseContext FrozenPart::context(
+    const case_data::EvaluatedCase& inputs, const settle::FilmState& film_state,
+    const TetMesh& mesh, const equations::ElasticSolution& solution,
+    const responses::ResponseModes& modes) const {
   return {inputs,      mesh,   solution, exclusion.what, &*film,
           &film_state, &pairs, &scans,   &modes};
 }

@@ -11,7 +11,7 @@
 #include "mesh_tet/tetrahedralize.h"
 #include "pipeline/forward/adaptation.h"
 #include "pipeline/forward/forward_model.h"
-#include "pipeline/forward/responses.h"
+#include "pipeline/responses/responses.h"
 
 namespace meniscus::forward {
 
@@ -35,10 +35,10 @@ struct FrozenPart {
   std::vector<char> curve_edge;
   std::optional<mesh_tet::MeshMotion> motion;
   std::optional<elastic::ElasticModel> elasticity;
-  ResponseModes base_modes;  // of the initial design
+  responses::ResponseModes base_modes;  // of the initial design
   Exclusion exclusion;
   functionals::ThicknessPairs pairs;
-  Scans scans;
+  responses::Scans scans;
   std::optional<Adaptation> adaptation;
 
   /// The surface as meshed, on the film `points` of the design of `inputs`.
@@ -49,11 +49,11 @@ struct FrozenPart {
                              const Points& points, const TetMesh& mesh,
                              const Points& by_nodes) const;
   /// What the responses of a design look at, on loan.
-  ResponseContext context(const case_data::EvaluatedCase& inputs,
-                          const settle::FilmState& film_state,
-                          const TetMesh& mesh,
-                          const equations::ElasticSolution& solution,
-                          const ResponseModes& modes) const;
+  responses::ResponseContext context(
+      const case_data::EvaluatedCase& inputs,
+      const settle::FilmState& film_state, const TetMesh& mesh,
+      const equations::ElasticSolution& solution,
+      const responses::ResponseModes& modes) const;
 };
 
 /// The chain of stages at the initial design of `part.input`, each kept for

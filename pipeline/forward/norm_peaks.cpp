@@ -69,7 +69,7 @@ std::vector<NormPeak> norm_peaks(const case_data::Case& input,
   for (int k = 0; k < static_cast<int>(input.responses.size()); ++k) {
     const ResponseEntry& response =
         input.responses[static_cast<std::size_t>(k)];
-    const auto load_case = static_cast<std::size_t>(response.load_case);
+    const std::size_t load_case = case_data::shown_load_case(input, response);
     if ((!is_mean(response) && !is_von_mises_ratio(response)) ||
         k >= responses.size() || load_case >= stress.size()) {
       continue;

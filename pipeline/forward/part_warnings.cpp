@@ -50,6 +50,9 @@ std::string thin_warning(const case_data::Case& input, const TetMesh& mesh,
                          const std::vector<StressFigures>& stress) {
   std::vector<std::string> places;
   for (const StressFigures& figures : stress) {
+    if (figures.is_unit_load) {
+      continue;
+    }
     const stress::Peak& peak = figures.readings.largest();
     if (peak.von_mises > 0.0 &&
         stress::one_element_through(mesh, peak.position, peak.region)) {
@@ -76,6 +79,9 @@ std::vector<std::string> part_warnings(
   std::vector<std::string> warnings;
   const double size = bounding_diagonal(fields.mesh.nodes);
   for (std::size_t k = 0; k < stress.size(); ++k) {
+    if (stress[k].is_unit_load) {
+      continue;
+    }
     if (stress[k].safety && stress[k].safety->factor < 1.0) {
       warnings.push_back(
           yield_warning(input, stress[k].load_case, *stress[k].safety, ""));
@@ -164,9 +170,9 @@ std::vector<std::string> process_warnings(const case_data::Case& input,
 
 std::vector<std::string> factor_warnings(const EvaluationFields& fields) {
   std::vector<std::string> warnings;
-  const ResponseModes& modes = fields.response_modes;
-  for (const ModalSum& sum : modes.sums) {
-    const FoundModes& found = modes.problems[sum.problem];
+  const responses::ResponseModes& modes = fields.response_modes;
+  for (const responses::ModalSum& sum : modes.sums) {
+    const responses::FoundModes& found = modes.problems[sum.problem];
     if (found.kind != case_data::ResponseKind::BucklingFactor) {
       continue;
     }

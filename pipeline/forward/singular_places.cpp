@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "pipeline/forward/response_partials.h"
+#include "pipeline/responses/response_partials.h"
 
 namespace meniscus::forward {
 
@@ -111,9 +111,9 @@ double growth_of_mean(const case_data::ResponseEntry& response,
   }
   // Of both the mean of exp(t): t = power ln s, or sharpness s / scale.
   const double factor =
-      is_norm
-          ? response.power
-          : response.sharpness / ks_scale(response, fields.inputs.materials);
+      is_norm ? response.power
+              : response.sharpness /
+                    responses::ks_scale(response, fields.inputs.materials);
   const auto exponent = [&](double stress) {
     return factor * (is_norm ? std::log(stress) : stress);
   };

@@ -12,6 +12,8 @@
 #include "fea/stress/averaged_stress.h"
 #include "pipeline/files/place_json.h"
 #include "pipeline/forward/singular_places.h"
+#include "pipeline/forward/worst_cases.h"
+#include "pipeline/responses/worst_loads.h"
 
 namespace meniscus::forward {
 
@@ -67,6 +69,12 @@ StressFigures peaks_of(const EvaluationFields& fields, std::size_t load_case) {
   StressFigures figures{.load_case = fields.inputs.load_cases[load_case].name,
                         .readings = stress::peak_readings(stress, excluded),
                         .safety = safety_of(stress, materials, excluded)};
+  figures.is_unit_load = is_unit_load(fields, load_case);
+  for (const WorstCase& worst : fields.worst_cases) {
+    if (worst.load_case == static_cast<int>(load_case)) {
+      figures.direction = worst.direction;
+    }
+  }
   figures.max_von_mises = figures.readings.recovered.von_mises;
   figures.position = figures.readings.recovered.position;
   stress::Excluded left_out = excluded;
@@ -113,6 +121,9 @@ StressFigures figures_of(const EvaluationFields& fields,
 }
 
 bool is_worse(const StressFigures& a, const StressFigures& b) {
+  if (a.is_unit_load != b.is_unit_load) {
+    return b.is_unit_load;
+  }
   if (a.safety && b.safety) {
     return a.safety->factor < b.safety->factor;
   }
@@ -246,6 +257,9 @@ std::string stress_text(const std::vector<StressFigures>& figures,
   const std::size_t worst = worst_load_case(figures);
   for (std::size_t k = 0; k < figures.size(); ++k) {
     const StressFigures& f = figures[k];
+    if (f.is_unit_load) {
+      continue;
+    }
     const Vec3& at = f.position;
     text += fmt::format("  peak stress, {:<8} {}", f.load_case,
                         quantity_text(f.max_von_mises, units.pressure));
@@ -253,6 +267,9 @@ std::string stress_text(const std::vector<StressFigures>& figures,
       text += "  +- " + quantity_text(f.peak_error, units.pressure, 3);
     }
     text += fmt::format(" at ({:.4g}, {:.4g}, {:.4g})", at.x(), at.y(), at.z());
+    text += f.direction
+                ? ", load along " + responses::direction_text(*f.direction)
+                : "";
     if (f.safety) {
       text += fmt::format(", safety {:.3g}", f.safety->factor);
       text += safety_text(f, units);
@@ -282,7 +299,13 @@ Json stress_json(const std::vector<StressFigures>& figures) {
                     {"averaged", f.readings.averaged.von_mises},
                     {"points", f.readings.points.von_mises}}},
                   {"error", f.peak_error}};
-    if (f.safety) {
+    if (f.is_unit_load) {
+      entry["unit_load"] = true;
+    }
+    if (f.direction) {
+      entry["direction"] = files::place_json(*f.direction);
+    }
+    if (f.safety && !f.is_unit_load) {
       entry["safety_factor"] = safety_json(*f.safety);
       if (const auto least = safety_with_error(f)) {
         entry["safety_factor"]["with_error"] = *least;
@@ -295,7 +318,7 @@ Json stress_json(const std::vector<StressFigures>& figures) {
       entry["excluded"] = {
           {"max_von_mises", f.excluded->max_von_mises},
           {"position", files::place_json(f.excluded->position)}};
-      if (f.excluded->safety) {
+      if (f.excluded->safety && !f.is_unit_load) {
         entry["excluded"]["safety_factor"] = safety_json(*f.excluded->safety);
       }
     }

@@ -17,6 +17,9 @@ namespace meniscus::forward {
 
 struct StressFigures {
   std::string load_case;
+  /// Of a load from any direction: not one that must come (worst_cases.h).
+  bool is_unit_load = false;
+  std::optional<Vec3> direction;  // of one that shows such a load
   double max_von_mises = 0.0;     // recovered, of elements that count
   Vec3 position = Vec3::Zero();   // of that [length]
   stress::PeakReadings readings;  // of the elements that count
@@ -88,7 +91,8 @@ std::string no_limit_text(const StressFigures& figures,
 std::optional<double> safety_with_error(const StressFigures& figures);
 
 /// The load case that is nearest to yield, by the least safety factor; without
-/// any, the one of the highest peak. The first of equals, 0 for none.
+/// any, the one of the highest peak. The first of equals, 0 for none; no unit
+/// load of a load from any direction.
 std::size_t worst_load_case(const std::vector<StressFigures>& figures);
 
 /// The same from the stresses themselves, at the price of their peaks.

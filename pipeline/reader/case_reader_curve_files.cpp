@@ -114,11 +114,18 @@ class FixedCurve {
   case_data::CurveEntry& curve_;
 };
 
+/// What a curve of a STEP file is: edges, or the rim of a face.
+struct StepNames {
+  std::vector<std::string> edges;
+  std::vector<std::string> faces;
+  const char* key = "edge";  // that names them
+};
+
 /// The curve's text, from the case or, fitted, from the file.
 std::string step_text(CaseContext& context, const CaseTable& table,
-                      const std::string& path, case_data::Case& result) {
-  const std::vector<std::string> edges = table.names_or_numbers("edge");
-  const std::vector<std::string> faces = table.names_or_numbers("face");
+                      const std::string& path, const StepNames& names,
+                      case_data::Case& result) {
+  const auto& [edges, faces, named] = names;
   if (edges.empty() && faces.empty()) {
     return "";  // noted
   }
@@ -137,7 +144,6 @@ std::string step_text(CaseContext& context, const CaseTable& table,
                     table.path(), place));
     return "";
   }
-  const char* named = edges.empty() ? "face" : "edge";
   const char* at = "file";
   try {
     const std::string unit = context.units.unit_of(Dimension::Length);
@@ -156,6 +162,26 @@ std::string step_text(CaseContext& context, const CaseTable& table,
                                                      at, error.what()));
   }
   return "";
+}
+
+bool read_step_curve(CaseContext& context, const CaseTable& table,
+                     const std::string& path, const StepNames& names,
+                     case_data::Case& result, case_data::CurveEntry& curve) {
+  const std::string text = step_text(context, table, path, names, result);
+  if (text.empty()) {
+    return false;
+  }
+  try {
+    const files::StepCurve found = files::read_step_curve_text(text);
+    std::visit(FixedCurve(table, curve), found.shape);
+    result.remarks.push_back(
+        fmt::format("{}: {}: {}", case_data::place(result, table.line("file")),
+                    table.path(), found.description));
+    return true;
+  } catch (const InvalidInput& error) {
+    context.problems.add(table.line("file"), error.what());
+  }
+  return false;
 }
 
 void read_step_edges(CaseContext& context, const CaseTable& table,
@@ -177,22 +203,20 @@ void read_step_edges(CaseContext& context, const CaseTable& table,
                          table.path() + ".face: expected one face");
     return;
   }
-  const std::string text = step_text(context, table, path, result);
-  if (text.empty()) {
-    return;
-  }
-  try {
-    const files::StepCurve found = files::read_step_curve_text(text);
-    std::visit(FixedCurve(table, curve), found.shape);
-    result.remarks.push_back(
-        fmt::format("{}: {}: {}", case_data::place(result, table.line("file")),
-                    table.path(), found.description));
-  } catch (const InvalidInput& error) {
-    context.problems.add(table.line("file"), error.what());
-  }
+  read_step_curve(context, table, path,
+                  {table.names_or_numbers("edge"),
+                   table.names_or_numbers("face"), edge ? "edge" : "face"},
+                  result, curve);
 }
 
 }  // namespace
+
+bool read_step_loop(CaseContext& context, const CaseTable& table,
+                    const std::string& path,
+                    const std::vector<std::string>& edges, const char* at,
+                    case_data::Case& result, case_data::CurveEntry& curve) {
+  return read_step_curve(context, table, path, {edges, {}, at}, result, curve);
+}
 
 const std::string* file_text(CaseContext& context, const CaseTable& table,
                              const std::string& path, const char* expected,

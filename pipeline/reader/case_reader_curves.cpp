@@ -131,21 +131,7 @@ void read_copy(CaseContext& context, const CaseTable& table,
                          table.path() + " has both scale and scales; keep one");
   }
   copy.mirror = table.vector("mirror");
-  copy.angle = table.quantity("rotate").value_or(fixed(table, "rotate", 0.0));
-  curve.axis = table.vector("axis").value_or(case_data::QuantityVector{
-      fixed(table, "axis", 0.0), fixed(table, "axis", 0.0),
-      fixed(table, "axis", 1.0)});
-  if (table.has("rotate") != table.has("axis")) {
-    context.problems.add(
-        table.line(table.has("axis") ? "axis" : "rotate"),
-        fmt::format("{} has {}; add it, it is turned right-handed about axis "
-                    "by the angle rotate",
-                    table.path(),
-                    table.has("axis") ? "an axis and no rotate"
-                                      : "rotate and no axis"));
-  }
-  copy.about = table.vector_or_zero("about");
-  copy.move = table.vector_or_zero("move");
+  read_motion(context, table, curve);
 }
 
 case_data::CurveEntry read_curve(CaseContext& context, const CaseTable& table,
@@ -182,6 +168,26 @@ case_data::CurveEntry read_curve(CaseContext& context, const CaseTable& table,
 }
 
 }  // namespace
+
+void read_motion(CaseContext& context, const CaseTable& table,
+                 case_data::CurveEntry& curve) {
+  case_data::CopyEntry& copy = curve.copy;
+  copy.angle = table.quantity("rotate").value_or(fixed(table, "rotate", 0.0));
+  curve.axis = table.vector("axis").value_or(case_data::QuantityVector{
+      fixed(table, "axis", 0.0), fixed(table, "axis", 0.0),
+      fixed(table, "axis", 1.0)});
+  if (table.has("rotate") != table.has("axis")) {
+    context.problems.add(
+        table.line(table.has("axis") ? "axis" : "rotate"),
+        fmt::format("{} has {}; add it, it is turned right-handed about axis "
+                    "by the angle rotate",
+                    table.path(),
+                    table.has("axis") ? "an axis and no rotate"
+                                      : "rotate and no axis"));
+  }
+  copy.about = table.vector_or_zero("about");
+  copy.move = table.vector_or_zero("move");
+}
 
 TableSpec curve_table() {
   using D = Dimension;

@@ -276,6 +276,17 @@ std::vector<std::string> with_feature_faces(
     const case_data::Case& input, const std::vector<std::string>& names) {
   std::vector<std::string> result;
   for (const std::string& name : names) {
+    const auto solid =
+        std::find_if(input.step_solids.begin(), input.step_solids.end(),
+                     [&](const case_data::StepSolidEntry& s) {
+                       return s.spec.name == name;
+                     });
+    if (solid != input.step_solids.end()) {
+      for (const int face : solid->faces) {
+        result.push_back(case_data::face_name(*solid, face));
+      }
+      continue;
+    }
     const case_data::FeatureEntry* feature = feature_named(input, name);
     if (feature == nullptr) {
       result.push_back(name);

@@ -101,7 +101,11 @@ const std::vector<SolidRow>& solid_kinds() {
        {"file",
         {{"file"}, {"curves", "surface", "scale", "within"}},
         "facets of an STL, OBJ or Surface Evolver file, which stay as they "
-        "are"}});
+        "are"},
+       {"step",
+        {{"file"}, {"rims", "open", "rotate", "axis", "about", "move"}},
+        "a solid of a STEP file, its faces exact: NAME/FACE by their names or "
+        "face_1, face_2, ..."}});
   return kinds;
 }
 
@@ -391,7 +395,8 @@ TableSpec solid_table() {
        {"curves", K::Names, D::None, false,
         "of sides: two polygons of as many corners; of file: those that its "
         "rims lie on; of flange: those in its top face that films grow from"},
-       {"file", K::Text, D::None, false, "of file: as of films"},
+       {"file", K::Text, D::None, false,
+        "of file: as of films; of step: .step or .stp"},
        {"surface", K::Name, D::None, false, "of file: as of films"},
        {"scale", K::Constant, D::None, false, "of file: as of films"},
        {"within", K::Constant, D::Length, false, "of file: as of films"},
@@ -408,7 +413,13 @@ TableSpec solid_table() {
         "cos(contact_angle) per area (Young)"},
        {"axis", K::Vector, std::nullopt, false,
         "of boss, flange: out of seat or top face; of lug: of its bore; of "
-        "block: to its top, z when left out; any length but 0"},
+        "block: to its top, z when left out; of step: what it is turned about; "
+        "any length but 0"},
+       {"rotate", K::Quantity, D::None, false,
+        "of step: by so much, right-handed about axis through about"},
+       {"about", K::Vector, D::Length, false,
+        "of step: [0, 0, 0] when left out"},
+       {"move", K::Vector, D::Length, false, "of step: and then by so much"},
        {"across", K::Vector, std::nullopt, false,
         "of flange: direction of its width; of block: to its right; x when "
         "left out"},
@@ -427,11 +438,13 @@ TableSpec solid_table() {
         "of boss: of a bore that does not go through"},
        {"chamfer", K::Quantity, D::Length, false,
         "of boss: of the bore's edge at the seat, at 45 degrees"},
-       {"rims", K::BossRims, D::Length, false,
+       {"rims", K::Rims, D::Length, false,
         "of boss: where films begin: [\"base\"], when left out, where the "
         "liquid takes over, or two, of \"base\", \"seat\" and heights "
         "above the base, between which it goes around; curves NAME/base, "
-        "NAME/seat, NAME/rim_1, NAME/rim_2"},
+        "NAME/seat, NAME/rim_1, NAME/rim_2. Of step: closed edges by name or "
+        "number, or several that close; curves NAME/EDGE or NAME/edge_7, by "
+        "the first edge"},
        {"thickness", K::Quantity, D::Length, false, "of flange, lug"},
        {"width", K::Quantity, D::Length, false,
         "of flange: along across; of lug: of its foot, twice radius when left "
@@ -447,9 +460,9 @@ TableSpec solid_table() {
         "of flange: of its holes"},
        {"size", K::Vector, D::Length, false,
         "of block: along across, at right angles to both, and along axis"},
-       {"open", K::Names, D::None, false,
+       {"open", K::NamesOrNumbers, D::None, false,
         "of block: faces that it does not have; films end at the curves of "
-        "these names"}}};
+        "these names; of step: faces left out, by name or number"}}};
 }
 
 void read_films(CaseContext& context, const toml::table& root,
@@ -474,6 +487,10 @@ void read_solids(CaseContext& context, const std::vector<CaseTable>& solids,
     }
     if (is_feature(table)) {
       add_feature_faces(table.name(), result);
+    } else if (is_step_solid(table)) {
+      table.check_kind("step",
+                       case_data::row_named(solid_kinds(), "step").keys);
+      add_step_faces(table.name(), result);
     } else {
       result.caps.push_back(read_solid(context, table, known, result));
     }

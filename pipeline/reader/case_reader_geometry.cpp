@@ -182,6 +182,7 @@ void read_geometry(CaseContext& context, const toml::table& root,
   read_curves(context, root, result);
   const std::vector<CaseTable> solids = named_tables(context, root, "solids");
   read_features(context, solids, result);
+  read_step_solids(context, solids, result);
   read_films(context, root, result);
   read_solids(context, solids, result);
   if (context.problems.empty()) {

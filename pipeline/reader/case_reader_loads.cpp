@@ -141,7 +141,8 @@ void read_support(CaseContext& context, const CaseTable& table,
   } else if (rigid) {
     load_case.pins.push_back(read_pin(context, table, surfaces));
   } else {
-    case_data::SupportEntry entry{.line = table.line()};
+    case_data::SupportEntry entry;
+    entry.line = table.line();
     read_fix(context, table, entry);
     for (const std::string& surface : surfaces) {
       entry.support.surface = surface;
@@ -212,6 +213,10 @@ const std::vector<LoadRow>& load_kinds() {
        true,
        {"at", "moment", "by", "axis"}},
       {"moment", case_data::LoadKind::Remote, true, {"at", "force", "by"}},
+      {"size",
+       case_data::LoadKind::Force,
+       true,
+       {"at", "by", "within", "about"}},
       {"pressure", case_data::LoadKind::Pressure, true, {}},
       {"traction", case_data::LoadKind::Traction, true, {}},
       {"gravity", case_data::LoadKind::Gravity, false, {}},
@@ -304,12 +309,106 @@ case_data::LoadPath load_path(CaseContext& context, const CaseTable& table,
     return by == "rigid" ? case_data::LoadPath::Rigid
                          : case_data::LoadPath::Spread;
   }
-  if (key != "force") {
+  if (key == "moment") {
     note(context, table, "by",
          "is bearing: a pin that presses carries a force, no moment alone");
   }
   refuse_foreign(context, table, {"moment"}, "a force that is bearing");
   return case_data::LoadPath::Bearing;
+}
+
+/// What directions a load of given size may come from; all without the keys.
+Cone read_cone(CaseContext& context, const CaseTable& table) {
+  constexpr double kHalfTurn = 180.0 * 0.017453292519943295;
+  Cone cone{.half_angle = kHalfTurn};
+  if (table.has("within") != table.has("about")) {
+    context.problems.add(
+        table.line(),
+        fmt::format("{} has one of 'within' and 'about'; a cone of directions "
+                    "needs both, as within = \"30 deg\", about = [0, 0, 1]; "
+                    "without them the load comes from any direction",
+                    table.path()));
+    return cone;
+  }
+  cone.half_angle = table.constant("within").value_or(kHalfTurn);
+  if (!(cone.half_angle >= 0.0 && cone.half_angle <= kHalfTurn)) {
+    note(context, table, "within",
+         fmt::format("is {:g} degrees; expected the angle between the load and "
+                     "'about', from 0 to 180",
+                     cone.half_angle * 180.0 / kHalfTurn));
+  }
+  const Vec3 axis = table.constant_vector("about").value_or(Vec3::UnitZ());
+  if (axis.norm() > 0.0) {
+    cone.axis = axis.normalized();
+  } else {
+    note(context, table, "about", "has no length; give a direction");
+  }
+  return cone;
+}
+
+/// A load case of a load from any direction is three, along x, y and z.
+void add_load_case(CaseContext& context, const CaseTable& table,
+                   case_data::LoadCaseEntry load_case,
+                   case_data::Case& result) {
+  const auto from_any =
+      std::find_if(load_case.loads.begin(), load_case.loads.end(),
+                   [](const case_data::LoadEntry& l) { return bool(l.size); });
+  if (from_any == load_case.loads.end()) {
+    result.load_cases.push_back(std::move(load_case));
+    return;
+  }
+  const case_data::LoadEntry load = *from_any;
+  const bool enforces =
+      std::any_of(load_case.supports.begin(), load_case.supports.end(),
+                  [](const auto& s) { return bool(s.displacement); }) ||
+      std::any_of(load_case.pins.begin(), load_case.pins.end(),
+                  [](const auto& p) { return p.displacement || p.rotation; });
+  if (load_case.loads.size() > 1 || enforces) {
+    context.problems.add(
+        load.line,
+        fmt::format("load case '{}' has a load from any direction beside {}; "
+                    "such a load acts alone: give it a load case of its own",
+                    load_case.name,
+                    enforces ? "an enforced displacement" : "another load"));
+  }
+  if (load.by == case_data::LoadPath::Bearing) {
+    context.problems.add(
+        load.line,
+        fmt::format("{}: which half of a bore a pin presses against turns "
+                    "with its force, so that a bearing's unit loads do not add "
+                    "up; take by = \"bearing\" out or give 'force'",
+                    table.path()));
+  }
+  result.directions.push_back(
+      {.name = load_case.name,
+       .first = static_cast<int>(result.load_cases.size()),
+       .cone = load.cone});
+  for (std::size_t k = 0; k < 3; ++k) {
+    case_data::LoadCaseEntry along = load_case;
+    along.name = fmt::format("{}_{}", load_case.name, "xyz"[k]);
+    along.loads = {load};
+    along.loads.front().vector = {};
+    along.loads.front().vector[k] = *load.size;
+    if (k > 0) {
+      along.loads.front().size.reset();  // checked once
+    }
+    result.load_cases.push_back(std::move(along));
+  }
+}
+
+void check_load_case_names(CaseContext& context,
+                           const case_data::Case& result) {
+  for (std::size_t a = 0; a < result.load_cases.size(); ++a) {
+    for (std::size_t b = 0; b < a; ++b) {
+      if (result.load_cases[a].name == result.load_cases[b].name) {
+        context.problems.add(
+            result.load_cases[a].line,
+            fmt::format("load case '{}' has the name of a unit load of a load "
+                        "from any direction; give it another",
+                        result.load_cases[a].name));
+      }
+    }
+  }
 }
 
 void read_load(CaseContext& context, const CaseTable& table,
@@ -323,8 +422,13 @@ void read_load(CaseContext& context, const CaseTable& table,
   }
   check_load_keys(context, table, key);
   load.kind = case_data::row_named(load_kinds(), key).kind;
-  if (key == "force" && (table.has("at") || table.has("moment"))) {
+  if ((key == "force" || key == "size") &&
+      (table.has("at") || table.has("moment"))) {
     load.kind = case_data::LoadKind::Remote;
+  }
+  if (key == "size") {
+    load.size = table.quantity_or_zero("size");
+    load.cone = read_cone(context, table);
   }
   load.by = load_path(context, table, key);
   load.has_at = table.has("at");
@@ -350,7 +454,45 @@ void read_load(CaseContext& context, const CaseTable& table,
   load_case.loads.push_back(std::move(load));
 }
 
+case_data::LoadEntry read_bolt(CaseContext& context, const CaseTable& table,
+                               const case_data::Case& result) {
+  case_data::LoadEntry bolt{
+      .kind = case_data::LoadKind::Preload,
+      .surfaces = surfaces_on(context, table, result, "seat"),
+      .thread = surfaces_on(context, table, result, "thread"),
+      .vector = table.vector_or_zero("axis"),
+      .at = table.vector_or_zero("at"),
+      .number = table.quantity_or_zero("preload"),
+      .line = table.line()};
+  for (const std::string& surface : bolt.surfaces) {
+    if (std::find(bolt.thread.begin(), bolt.thread.end(), surface) !=
+        bolt.thread.end()) {
+      note(context, table, "thread",
+           fmt::format("has '{}', which the head is on, too", surface));
+    }
+  }
+  return bolt;
+}
+
 }  // namespace
+
+TableSpec bolt_table() {
+  using D = Dimension;
+  using K = KeyType;
+  return {"bolts",
+          true,
+          TableNeed::Optional,
+          "A bolt that is tightened: in every load case its preload presses "
+          "into the seat under its head and pulls on its thread, in balance",
+          {{"preload", K::Quantity, D::Force, true, "tension in it, above 0"},
+           {"seat", K::NameOrNames, D::None, true,
+            "surfaces under its head, or a nut"},
+           {"thread", K::NameOrNames, D::None, true,
+            "surfaces that its thread, or a nut at its other end, pulls on"},
+           {"axis", K::Vector, std::nullopt, true,
+            "from the thread to the head; any length but 0"},
+           {"at", K::Vector, D::Length, true, "a point on its axis"}}};
+}
 
 TableSpec load_table() {
   using D = Dimension;
@@ -369,6 +511,14 @@ TableSpec load_table() {
         "total, spread as uniform traction; with `at` through that point"},
        {"moment", K::Vector, D::Energy, false,
         "total, beside that of the force"},
+       {"size", K::Quantity, D::Force, false,
+        "of a force from the worst direction for each response: the only load "
+        "of its case"},
+       {"within", K::Constant, D::Angle, false,
+        "of size: the largest angle between the force and `about`, 0 to 180 "
+        "degrees; any direction when both are left out"},
+       {"about", K::ConstantVector, std::nullopt, false,
+        "of size: the axis of that cone; any length but 0"},
        {"at", K::Vector, D::Length, false,
         "of force and moment: the point they act through; of spin: on the "
         "axis"},
@@ -481,13 +631,13 @@ std::string surface_on(CaseContext& context, const CaseTable& table,
 }
 
 loads::Surfaces surfaces_on(CaseContext& context, const CaseTable& table,
-                            const case_data::Case& result) {
+                            const case_data::Case& result, const char* key) {
   loads::Surfaces surfaces;
-  for (const std::string& name : table.name_or_names("on")) {
-    std::string surface = known_surface(context, table, result, "on", name);
+  for (const std::string& name : table.name_or_names(key)) {
+    std::string surface = known_surface(context, table, result, key, name);
     if (std::find(surfaces.begin(), surfaces.end(), surface) !=
         surfaces.end()) {
-      note(context, table, "on", fmt::format("has '{}' twice", name));
+      note(context, table, key, fmt::format("has '{}' twice", name));
     } else {
       surfaces.push_back(std::move(surface));
     }
@@ -497,6 +647,10 @@ loads::Surfaces surfaces_on(CaseContext& context, const CaseTable& table,
 
 void read_load_cases(CaseContext& context, const toml::table& root,
                      case_data::Case& result) {
+  std::vector<case_data::LoadEntry> preloads;
+  for (const CaseTable& table : named_tables(context, root, "bolts")) {
+    preloads.push_back(read_bolt(context, table, result));
+  }
   for (const CaseTable& table : named_tables(context, root, "load_cases")) {
     case_data::LoadCaseEntry load_case{.name = table.name(),
                                        .line = table.line()};
@@ -506,9 +660,12 @@ void read_load_cases(CaseContext& context, const toml::table& root,
     for (const CaseTable& load : table.tables("loads", "load")) {
       read_load(context, load, result, load_case);
     }
+    load_case.loads.insert(load_case.loads.end(), preloads.begin(),
+                           preloads.end());
     check_pins(context, load_case);
-    result.load_cases.push_back(std::move(load_case));
+    add_load_case(context, table, std::move(load_case), result);
   }
+  check_load_case_names(context, result);
 }
 
 }  // namespace meniscus::reader

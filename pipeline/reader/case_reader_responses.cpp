@@ -9,6 +9,7 @@
 
 #include "core/atomic_file.h"
 #include "pipeline/case_data/case_checks.h"
+#include "pipeline/case_data/response_entries.h"
 #include "pipeline/case_data/response_kinds.h"
 #include "pipeline/case_data/scan_path.h"
 #include "pipeline/files/content_hash.h"
@@ -25,6 +26,12 @@ double constant_above(CaseContext& context, const CaseTable& table,
                        fmt::format("{}.{} is {:g}; it must be above {:g}",
                                    table.path(), key, value, above));
   return standard;
+}
+
+bool takes_load_case(const case_data::ResponseEntry& entry) {
+  const std::vector<std::string>& keys =
+      case_data::row_of(entry.kind).keys.optional;
+  return std::find(keys.begin(), keys.end(), "load_case") != keys.end();
 }
 
 namespace {
@@ -349,6 +356,14 @@ case_data::ResponseEntry read_response(CaseContext& context,
   if (response.kind == case_data::ResponseKind::Expression) {
     response.value = read_value(context, table, result);
   }
+  if (takes_load_case(response) &&
+      response.kind != case_data::ResponseKind::Frequency &&
+      !table.has("load_cases")) {
+    const auto asked = asked_case(result, table.text("load_case"));
+    if (asked) {  // else it has been noted
+      ask(context, table.line("load_case"), *asked, response);
+    }
+  }
   return response;
 }
 
@@ -361,15 +376,64 @@ int index_of_load_case(CaseContext& context, const CaseTable& table,
   if (!wanted) {
     return 0;
   }
+  if (const auto asked = asked_case(result, wanted)) {
+    return asked->load_case;
+  }
   std::vector<std::string> known;
-  for (const case_data::LoadCaseEntry& entry : result.load_cases) {
-    if (entry.name == *wanted) {
-      return static_cast<int>(known.size());
-    }
-    known.push_back(entry.name);
+  for (const AskedCase& asked : asked_cases(result)) {
+    known.push_back(asked.name);
   }
   context.problems.unknown(table.line(key), "load case", *wanted, known);
   return 0;
+}
+
+std::vector<AskedCase> asked_cases(const case_data::Case& result) {
+  std::vector<AskedCase> asked;
+  for (int k = 0; k < static_cast<int>(result.load_cases.size()); ++k) {
+    const auto from_any = std::find_if(
+        result.directions.begin(), result.directions.end(),
+        [&](const case_data::DirectionsEntry& d) { return d.first == k; });
+    if (from_any == result.directions.end()) {
+      asked.push_back({.name = result.load_cases[k].name, .load_case = k});
+    } else {
+      asked.push_back({from_any->name, k, from_any->cone});
+      k += 2;
+    }
+  }
+  return asked;
+}
+
+std::optional<AskedCase> asked_case(const case_data::Case& result,
+                                    const std::optional<std::string>& name) {
+  for (const AskedCase& asked : asked_cases(result)) {
+    if (!name || asked.name == *name) {
+      return asked;
+    }
+  }
+  for (int k = 0; k < static_cast<int>(result.load_cases.size()); ++k) {
+    if (result.load_cases[k].name == *name) {
+      return AskedCase{.name = *name, .load_case = k};
+    }
+  }
+  return std::nullopt;
+}
+
+void ask(CaseContext& context, case_data::SourceLine line,
+         const AskedCase& asked, case_data::ResponseEntry& response) {
+  response.load_case = asked.load_case;
+  response.worst_in = asked.worst_in;
+  if (asked.worst_in && !case_data::knows_worst_direction(response)) {
+    context.problems.add(
+        line,
+        fmt::format("responses.{} is of load case '{}', whose load comes from "
+                    "any direction; its kind knows no worst one: "
+                    "mean_displacement, rotation, compliance, strain_energy "
+                    "and stress_ratio of von Mises stress do. Ask it of the "
+                    "unit loads '{}_x', '{}_y' and '{}_z' instead, or of a "
+                    "load case with 'force'",
+                    response.name, asked.name, asked.name, asked.name,
+                    asked.name));
+  }
 }
 
 int index_of_held(CaseContext& context, const CaseTable& table,

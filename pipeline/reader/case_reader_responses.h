@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,29 @@ Value read_named(CaseContext& context, const CaseTable& table, const char* key,
 /// A constant above `above`; `standard` without the key or when it is wrong.
 double constant_above(CaseContext& context, const CaseTable& table,
                       const char* key, double above, double standard);
+
+/// Its kind has the key `load_case`.
+bool takes_load_case(const case_data::ResponseEntry& entry);
+
+/// What a response may be of: a load case, or the worst direction of a load
+/// from any, whose unit loads begin at `load_case`.
+struct AskedCase {
+  std::string name;
+  int load_case = 0;
+  std::optional<Cone> worst_in = {};
+};
+
+/// The first of them, or the one by that name, unit loads included; nothing
+/// where there is none.
+std::optional<AskedCase> asked_case(const case_data::Case& result,
+                                    const std::optional<std::string>& name);
+
+/// All, in order, without unit loads.
+std::vector<AskedCase> asked_cases(const case_data::Case& result);
+
+/// Asks `response` of a load case; notes where it knows no worst direction.
+void ask(CaseContext& context, case_data::SourceLine line,
+         const AskedCase& asked, case_data::ResponseEntry& response);
 
 /// What stress_ratio and fatigue are measured by; nothing of other kinds.
 void read_strength(CaseContext& context, const CaseTable& table,

@@ -63,30 +63,30 @@ double read_excess(CaseContext& context, const CaseTable& table,
 }
 
 /// Load cases by name, each once; all when the key is left out.
-std::vector<int> read_load_cases_of(CaseContext& context,
-                                    const CaseTable& table,
-                                    const case_data::Case& result) {
+std::vector<AskedCase> read_load_cases_of(CaseContext& context,
+                                          const CaseTable& table,
+                                          const case_data::Case& result) {
   std::vector<std::string> known;
-  known.reserve(result.load_cases.size());
-  for (const case_data::LoadCaseEntry& entry : result.load_cases) {
-    known.push_back(entry.name);
+  for (const AskedCase& asked : asked_cases(result)) {
+    known.push_back(asked.name);
   }
-  std::vector<int> load_cases;
+  std::vector<AskedCase> load_cases;
   for (const std::string& name :
        table.has("load_cases") ? table.names("load_cases") : known) {
-    const auto at = std::find(known.begin(), known.end(), name);
-    const int index = static_cast<int>(at - known.begin());
-    if (at == known.end()) {
+    const auto asked = asked_case(result, name);
+    if (!asked) {
       context.problems.unknown(table.line("load_cases"), "load case", name,
                                known);
-    } else if (std::find(load_cases.begin(), load_cases.end(), index) !=
-               load_cases.end()) {
+    } else if (std::any_of(load_cases.begin(), load_cases.end(),
+                           [&](const AskedCase& other) {
+                             return other.name == name;
+                           })) {
       context.problems.add(table.line("load_cases"),
                            fmt::format("{}.load_cases names '{}' twice; name "
                                        "each once",
                                        table.path(), name));
     } else {
-      load_cases.push_back(index);
+      load_cases.push_back(*asked);
     }
   }
   return load_cases;
@@ -105,30 +105,24 @@ std::optional<int> response_above(CaseContext& context, const CaseTable& table,
   return static_cast<int>(at - known.begin());
 }
 
-bool takes_load_case(const case_data::ResponseEntry& entry) {
-  const std::vector<std::string>& keys =
-      case_data::row_of(entry.kind).keys.optional;
-  return std::find(keys.begin(), keys.end(), "load_case") != keys.end();
-}
-
 /// `of` asked of each load case: the responses that are not there yet are
 /// added.
-std::vector<int> over_load_cases(const case_data::ResponseEntry& of,
+std::vector<int> over_load_cases(CaseContext& context, const CaseTable& table,
+                                 const case_data::ResponseEntry& of,
                                  std::optional<int> own,
-                                 const std::vector<int>& load_cases,
+                                 const std::vector<AskedCase>& load_cases,
                                  case_data::Case& result) {
   std::vector<int> parts;
   parts.reserve(load_cases.size());
-  for (const int load_case : load_cases) {
-    if (own && of.load_case == load_case) {
+  for (const AskedCase& asked : load_cases) {
+    if (own && of.load_case == asked.load_case &&
+        of.worst_in.has_value() == asked.worst_in.has_value()) {
       parts.push_back(*own);
       continue;
     }
     case_data::ResponseEntry part = of;
-    part.load_case = load_case;
-    part.name = fmt::format(
-        "{}[{}]", of.name,
-        result.load_cases[static_cast<std::size_t>(load_case)].name);
+    part.name = fmt::format("{}[{}]", of.name, asked.name);
+    ask(context, table.line("load_cases"), asked, part);
     const std::vector<std::string> known = case_data::response_names(result);
     const auto at = std::find(known.begin(), known.end(), part.name);
     parts.push_back(static_cast<int>(at - known.begin()));
@@ -153,7 +147,7 @@ std::vector<int> read_parts(CaseContext& context, const CaseTable& table,
   } else if (table.has("of")) {
     const auto of =
         response_above(context, table, "of", *table.text("of"), result);
-    const std::vector<int> load_cases =
+    const std::vector<AskedCase> load_cases =
         read_load_cases_of(context, table, result);
     if (!of) {
       return parts;
@@ -161,7 +155,7 @@ std::vector<int> read_parts(CaseContext& context, const CaseTable& table,
     const case_data::ResponseEntry entry =
         result.responses[static_cast<std::size_t>(*of)];
     if (takes_load_case(entry)) {
-      return over_load_cases(entry, of, load_cases, result);
+      return over_load_cases(context, table, entry, of, load_cases, result);
     }
     context.problems.add(
         table.line("of"),
@@ -252,7 +246,11 @@ void read_strength(CaseContext& context, const CaseTable& table,
                                    m.endurance_limit.value_or(0.0);
                       });
   }
-  response.load_cases = read_load_cases_of(context, table, result);
+  for (const AskedCase& asked : read_load_cases_of(context, table, result)) {
+    case_data::ResponseEntry of = response;
+    ask(context, table.line("load_cases"), asked, of);
+    response.load_cases.push_back(asked.load_case);
+  }
   if (table.has("load_cases") && response.load_cases.size() != 2) {
     context.problems.add(
         table.line("load_cases"),
@@ -274,7 +272,7 @@ void add_response(CaseContext& context, const CaseTable& table,
     check_parts(context, table, response, result);
   } else if (response.kind != ResponseKind::Fatigue &&
              table.has("load_cases")) {
-    const std::vector<int> load_cases =
+    const std::vector<AskedCase> load_cases =
         read_load_cases_of(context, table, result);
     if (table.has("load_case") || load_cases.empty()) {
       context.problems.add(
@@ -289,8 +287,8 @@ void add_response(CaseContext& context, const CaseTable& table,
     case_data::ResponseEntry envelope = response;
     envelope.kind = ResponseKind::Envelope;
     envelope.excess = kExcess;
-    envelope.parts =
-        over_load_cases(response, std::nullopt, load_cases, result);
+    envelope.parts = over_load_cases(context, table, response, std::nullopt,
+                                     load_cases, result);
     response = std::move(envelope);
   }
   if (!response.parts.empty()) {

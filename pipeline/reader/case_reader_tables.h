@@ -27,9 +27,21 @@ std::optional<CaseTable> single_table(CaseContext& context,
 void read_curves(CaseContext& context, const toml::table& root,
                  case_data::Case& result);
 
+/// How a copy is turned and moved: `rotate` about `axis` through `about`, then
+/// `move`.
+void read_motion(CaseContext& context, const CaseTable& table,
+                 case_data::CurveEntry& curve);
+
 /// A curve of kind "file": its points, or the curve of STEP edges.
 void read_curve_file(CaseContext& context, const CaseTable& table,
                      case_data::Case& result, case_data::CurveEntry& curve);
+
+/// The curve of edges of a STEP file that close, by names or numbers; problems
+/// are those of the key `at`. False where it is none, which has been noted.
+bool read_step_loop(CaseContext& context, const CaseTable& table,
+                    const std::string& path,
+                    const std::vector<std::string>& edges, const char* at,
+                    case_data::Case& result, case_data::CurveEntry& curve);
 
 /// What the points of a csv file make.
 const std::vector<case_data::Named<case_data::CurveKind>>& point_curves();
@@ -64,9 +76,20 @@ void read_features(CaseContext& context, const std::vector<CaseTable>& solids,
 /// The faces of the feature of that name, which must exist, among the solids.
 void add_feature_faces(const std::string& name, case_data::Case& result);
 
-/// Each name of a feature replaced by those of its faces.
+/// Each name of a feature or STEP solid replaced by those of its faces.
 std::vector<std::string> with_feature_faces(
     const case_data::Case& input, const std::vector<std::string>& names);
+
+/// Solids of kind "step": the curves of their rims; after the curves, before
+/// the films.
+bool is_step_solid(const CaseTable& table);
+void read_step_solids(CaseContext& context,
+                      const std::vector<CaseTable>& solids,
+                      case_data::Case& result);
+
+/// The faces of the solid of that name among the solids; none where it could
+/// not be read.
+void add_step_faces(const std::string& name, case_data::Case& result);
 
 /// After curves and features; solids, of their own tables, after the films.
 void read_films(CaseContext& context, const toml::table& root,
@@ -92,15 +115,12 @@ std::string surface_on(CaseContext& context, const CaseTable& table,
 
 /// The same of a load or support, which may name several with `on`.
 loads::Surfaces surfaces_on(CaseContext& context, const CaseTable& table,
-                            const case_data::Case& result);
+                            const case_data::Case& result,
+                            const char* key = "on");
 
-/// Supports and loads; after the geometry.
+/// Supports and loads, those of bolts among all others; after the geometry.
 void read_load_cases(CaseContext& context, const toml::table& root,
                      case_data::Case& result);
-
-/// What stress figures leave out, from [analysis]; after the geometry.
-void read_zones(CaseContext& context, const CaseTable& table,
-                case_data::Case& result);
 
 /// The load case that `key` names; the first when left out or wrong.
 int index_of_load_case(CaseContext& context, const CaseTable& table,

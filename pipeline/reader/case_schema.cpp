@@ -109,6 +109,7 @@ std::vector<TableSpec> make_tables() {
          "strain per degree; 0 when left out"},
         {"thermal_expansions", K::ConstantVector, D::None, false,
          "of orthotropic: along axes 1, 2, 3"}}},
+      bolt_table(),
       {"load_cases",
        true,
        N::ForParts,

@@ -31,7 +31,7 @@ enum class KeyType {
   ConstantVector,  // array of three constants
   PlaceVector,     // array of three places
   Axes,            // two arrays of three constants
-  BossRims,        // array of one or two: "base", "seat" or a quantity
+  Rims,            // array of "base", "seat" or a quantity each; or of edges
   Bounds,          // array of two constants
   Constants,       // array of constants
   ConstantMap,     // inline table: response = constant, of its dimension
@@ -77,7 +77,8 @@ TableSpec film_table();      // case_reader_films.cpp
 TableSpec solid_table();     // case_reader_films.cpp
 TableSpec wall_table();      // case_reader_walls.cpp
 TableSpec field_table();     // case_reader_energies.cpp
-TableSpec load_table();      // case_reader_loads.cpp
+TableSpec bolt_table();      // case_reader_loads.cpp
+TableSpec load_table();      // the same
 TableSpec analysis_table();  // case_reader_analysis.cpp
 TableSpec response_table();  // case_reader_responses.cpp
 TableSpec study_table();     // case_reader_kinds.cpp

@@ -51,8 +51,8 @@ const char* type_text(const KeySpec& key) {
       return "3 quantities of x, y, z";
     case K::Axes:
       return "2 directions";
-    case K::BossRims:
-      return "base, seat or quantity";
+    case K::Rims:
+      return "base, seat or quantity; edges";
     case K::Bounds:
       return "2 constants";
     case K::Constants:
@@ -210,8 +210,11 @@ Json type_schema(const KeySpec& key) {
                         {"additionalProperties", false}};
       return array({{"anyOf", {point, arc, repeated("at", point)}}}, 1, 0);
     }
-    case K::BossRims:
-      return array(quantity, 1, 2);
+    case K::Rims:
+      return array(
+          {{"anyOf",
+            {quantity, array({{"type", {"string", "integer"}}}, 1, 0)}}},
+          1, 0);
     case K::Bounds:
       return array(quantity, 2, 2);
     case K::Constants:

@@ -294,8 +294,12 @@ io::CalculixDeck calculix_deck_of(
 io::CalculixDeck calculix_deck_of(const case_data::Case& input,
                                   const case_data::EvaluatedCase& inputs,
                                   const TetMesh& mesh) {
-  io::CalculixDeck deck =
-      calculix_deck_of(inputs.materials, inputs.load_cases, mesh);
+  // Without those that only show a load from any direction: of its unit loads
+  // any follows.
+  const auto solved = static_cast<std::ptrdiff_t>(input.load_cases.size());
+  io::CalculixDeck deck = calculix_deck_of(
+      inputs.materials,
+      {inputs.load_cases.begin(), inputs.load_cases.begin() + solved}, mesh);
   deck.comments = {"case: " + input.title, "units: " + input.units.name};
   return deck;
 }

@@ -96,7 +96,7 @@ std::vector<CurvePieces> pieces_of_curves(
 std::vector<CurvePieces> pieces_of_curves(const films::FilmComplex& complex) {
   std::map<int, Points> ends;  // by curve
   for (const films::ComplexEdge& edge : complex.edges) {
-    if (edge.curve >= 0) {
+    if (edge.curve >= 0 && edge.kind != films::VertexKind::OnEdge) {
       for (const int end : {edge.a, edge.b}) {
         ends[edge.curve].push_back(
             complex.mesh.points[static_cast<std::size_t>(end)]);

@@ -10,6 +10,7 @@
 #include "pipeline/case_films/film_start.h"
 #include "pipeline/forward/design_stages.h"
 #include "pipeline/forward/walls.h"
+#include "pipeline/forward/worst_cases.h"
 #include "pipeline/store/refreeze.h"
 #include "pipeline/store/stored_case.h"
 #include "pipeline/store/study_store.h"
@@ -108,8 +109,7 @@ const forward::EvaluationFields& ExportJob::fields() {
   if (evaluation.failure) {
     throw no_part(input_, evaluation.failure);
   }
-  fields_->stresses =
-      forward::part_stresses(fields_->mesh, fields_->inputs, fields_->solution);
+  forward::find_stresses(input_, *fields_);
   return *fields_;
 }
 

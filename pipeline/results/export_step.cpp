@@ -11,6 +11,7 @@
 #include "cad/solid/mesh_parts.h"
 #include "cad/step/step_writer.h"
 #include "core/error.h"
+#include "evolve/films/solid_frame.h"
 #include "evolve/frozen/film_model.h"
 #include "pipeline/results/rim_pieces.h"
 
@@ -80,6 +81,10 @@ std::size_t plane_count(const SurfaceMesh& mesh, int label) {
 bool is_flat(const films::CapSpec& cap, const films::FilmSystem& system,
              const SurfaceMesh& mesh) {
   const int label = mesh.label_of(cap.name);
+  if (cap.solid >= 0) {
+    return std::holds_alternative<ExactPlane>(
+        system.solids[cap.solid].shape->faces[cap.face].surface);
+  }
   if ((cap.inner.empty() && !cap.start && !cap.ruled) || label < 0) {
     return true;
   }
@@ -192,6 +197,22 @@ films::FilmSystem held_where_it_slid(films::FilmSystem system,
   return system;
 }
 
+/// Faces of STEP solids where the design has them.
+std::vector<solid::ExactFaces> exact_faces_of(const films::FilmSystem& system) {
+  std::vector<solid::ExactFaces> result;
+  for (std::size_t s = 0; s < system.solids.size(); ++s) {
+    solid::ExactFaces& exact = result.emplace_back();
+    exact.shape = films::shape_at(system.solids[s], system.curves);
+    for (const films::CapSpec& cap : system.caps) {
+      if (cap.solid == static_cast<int>(s)) {
+        exact.faces.push_back(cap.face);
+        exact.names.push_back(cap.name);
+      }
+    }
+  }
+  return result;
+}
+
 frozen::FilmModel settled(const films::FilmSystem& system, double edge) {
   frozen::FilmModel model =
       frozen::FilmModel::freeze(system, {.edge = edge, .refinements = 0});
@@ -206,19 +227,32 @@ std::string number_of(int count, const char* what) {
   return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }
 
-void tell(const StepExport& options, const solid::FilmSolidReport& film,
+/// ", 7 faces of STEP solids"; empty: none.
+std::string faces_text(const solid::Brep& brep) {
+  std::size_t faces = 0;
+  for (const solid::ExactFaces& exact : brep.exact) {
+    faces += exact.faces.size();
+  }
+  return faces == 0 ? ""
+                    : fmt::format(", {} face{} of STEP solids", faces,
+                                  faces == 1 ? "" : "s");
+}
+
+void tell(const StepExport& options, const solid::FilmSolid& solid,
           const step::StepReport& step) {
+  const solid::FilmSolidReport& film = solid.report;
   Monitor& monitor =
       options.monitor != nullptr ? *options.monitor : silent_monitor();
   const std::string& unit = options.unit;
   monitor.log(
       Severity::Info,
-      fmt::format("{}, {}, {}, {}, {}; valid closed solid of {:.6g} {}3",
+      fmt::format("{}, {}, {}, {}, {}{}; valid closed solid of {:.6g} {}3",
                   number_of(film.patches, "B-spline face"),
                   number_of(film.planes, "plane"),
                   number_of(film.cylinders, "cylinder"),
                   number_of(film.cones, "cone"),
-                  number_of(film.spheres, "sphere"), step.volume, unit));
+                  number_of(film.spheres, "sphere"), faces_text(solid.brep),
+                  step.volume, unit));
   for (const solid::SimpleFace& face : film.simple) {
     monitor.log(
         Severity::Info,
@@ -261,8 +295,12 @@ void export_step(const std::filesystem::path& file,
   const films::FilmSystem held = held_where_it_slid(system, model);
   model = settled(for_smooth_films(held, mesh), options.edge);
   mesh = model.boundary(model.reference().points);
-  solid::FilmSolidInput input{mesh, rims_of(held, model), {}, options.edge};
+  solid::FilmSolidInput input{mesh, rims_of(held, model), {}, {}, options.edge};
   for (const films::CapSpec& cap : held.caps) {
+    if (cap.solid >= 0) {
+      input.exact.push_back(cap.name);
+      continue;
+    }
     if (is_flat(cap, held, mesh)) {
       input.caps.push_back(cap.name);
     }
@@ -270,8 +308,9 @@ void export_step(const std::filesystem::path& file,
       input.creased.push_back(cap.name);
     }
   }
-  const solid::FilmSolid solid = solid::film_solid(input);
-  tell(options, solid.report, step::write_step(file, solid.brep, names));
+  solid::FilmSolid solid = solid::film_solid(input);
+  solid.brep.exact = exact_faces_of(system);
+  tell(options, solid, step::write_step(file, solid.brep, names));
 }
 
 }  // namespace meniscus::results

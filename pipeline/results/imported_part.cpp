@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/geometry/touching_bodies.h"
 #include "core/heed_stop.h"
 #include "mesh_tet/quadratic.h"
 #include "mesh_tet/tetrahedralize.h"
@@ -266,8 +267,8 @@ PartFigures imported_part_figures(const std::filesystem::path& path,
         {.unit = run.input.units.length, .edge = size, .monitor = monitor});
   };
   const double longest = kLongestEdge * edge;
-  SurfaceMesh own =
-      renamed(read(edge), names, path.string(), run.input.units.length);
+  SurfaceMesh own = with_own_bodies(
+      renamed(read(edge), names, path.string(), run.input.units.length));
   check_names(own, run.fields.inputs, path.string(), run.input.units.length);
   require_like_size(own.points, run.fields.mesh.nodes, path.string(),
                     run.input.units.length);
@@ -280,13 +281,14 @@ PartFigures imported_part_figures(const std::filesystem::path& path,
     shape = std::make_unique<PartShape>(read(kShapeInEdges * edge));
   }
   if (shape != nullptr) {
-    own = even_surface(own, edge, *shape);
+    own = with_own_bodies(even_surface(own, edge, *shape));
   }
   const SurfaceMesh surface =
       with_short_edges(std::move(own), longest, shape.get());
   forward::EvaluationFields fields;
   fields.inputs = run.fields.inputs;
-  fields.inputs.materials.resize(1);
+  fields.inputs.materials.assign(static_cast<std::size_t>(body_count(surface)),
+                                 run.fields.inputs.materials.front());
   fields.mesh = filled(surface, shape.get(), edge, path.string(), monitor);
   fields.exclusion = forward::choose_exclusion(run.input, fields.mesh,
                                                forward::EmptyZones::Allowed);

@@ -99,19 +99,19 @@ io::MeshFields part_fields(const case_data::Case& input,
                            const forward::EvaluationFields& fields,
                            const std::string& load_case = "") {
   std::size_t worst = forward::worst_load_case(fields);
-  for (std::size_t k = 0; k < input.load_cases.size(); ++k) {
-    worst = input.load_cases[k].name == load_case ? k : worst;
+  const std::vector<loads::LoadCase>& cases = fields.inputs.load_cases;
+  for (std::size_t k = 0; k < cases.size(); ++k) {
+    worst = cases[k].name == load_case ? k : worst;
   }
   io::MeshFields out;
   add_node_fields(input, fields, worst, "", out);
-  for (std::size_t k = 0;
-       input.load_cases.size() > 1 && k < fields.stresses.size(); ++k) {
-    add_node_fields(input, fields, k, "_" + input.load_cases[k].name, out);
+  for (std::size_t k = 0; cases.size() > 1 && k < fields.stresses.size(); ++k) {
+    add_node_fields(input, fields, k, "_" + cases[k].name, out);
   }
   out.cells = element_fields(input, fields, worst);
   out.notes = {{"title", input.title},
                {"length_unit", input.units.length},
-               {"load_case", input.load_cases[worst].name}};
+               {"load_case", cases[worst].name}};
   for (const forward::ModeShape& mode : fields.modes) {
     out.points.push_back(
         node_field(mode.name, "", 3, mode.shape.data(),
@@ -287,6 +287,11 @@ nlohmann::ordered_json result_json(const case_data::Case& input,
   }
   if (best != nullptr) {
     add_envelopes(input, best->responses, json);
+    for (const responses::WorstLoad& worst : result.worst_loads) {
+      json["worst_directions"][names[worst.response]] = {
+          {"load_case", worst.load_case},
+          {"direction", files::place_json(worst.direction)}};
+    }
     add_norm_peaks(input, best->responses, result.stress, json);
   }
   if (result.eigen) {

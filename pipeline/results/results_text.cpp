@@ -167,6 +167,12 @@ std::string result_text(const case_data::Case& input,
           fmt::format("   ({} '{}')", response.least ? "least" : "most",
                       names[case_data::extreme_part(response, best.responses)]);
     }
+    for (const responses::WorstLoad& worst : result.worst_loads) {
+      text += worst.response == k
+                  ? fmt::format("   (worst along {})",
+                                responses::direction_text(worst.direction))
+                  : "";
+    }
     text += "\n";
   }
   const bool matches = input.study.kind == case_data::StudyKind::Match;

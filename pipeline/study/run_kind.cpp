@@ -7,7 +7,7 @@
 
 #include "pipeline/case_data/response_entries.h"
 #include "pipeline/case_data/studied_responses.h"
-#include "pipeline/forward/responses.h"
+#include "pipeline/responses/responses.h"
 #include "pipeline/store/incumbent.h"
 
 namespace meniscus::study {

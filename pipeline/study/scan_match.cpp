@@ -14,8 +14,8 @@ const ScanMatch::Settled& ScanMatch::settled(const VectorX& design) {
   if (last_.design.size() != design.size() || last_.design != design) {
     last_.inputs = meniscus::case_data::evaluate(input_, design);
     last_.film = model_.film().settle(last_.inputs.film_system);
-    last_.distances = forward::scan_distances(response_, model_.scans(),
-                                              model_.film(), last_.film.points);
+    last_.distances = responses::scan_distances(
+        response_, model_.scans(), model_.film(), last_.film.points);
     last_.design = design;
   }
   return last_;

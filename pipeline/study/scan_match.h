@@ -4,7 +4,7 @@
 #include "optimize/problem.h"
 #include "pipeline/case_data/case.h"
 #include "pipeline/forward/forward_model.h"
-#include "pipeline/forward/scans.h"
+#include "pipeline/responses/scans.h"
 
 namespace meniscus::study {
 

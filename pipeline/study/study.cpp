@@ -16,9 +16,11 @@
 #include "pipeline/accuracy/doubted_margins.h"
 #include "pipeline/accuracy/mesh_errors.h"
 #include "pipeline/case_data/composed_responses.h"
+#include "pipeline/case_data/response_entries.h"
 #include "pipeline/forward/norm_peaks.h"
 #include "pipeline/forward/part_warnings.h"
 #include "pipeline/forward/singular_places.h"
+#include "pipeline/forward/worst_cases.h"
 #include "pipeline/frames/film_frames.h"
 #include "pipeline/store/incumbent.h"
 #include "pipeline/store/stored_case.h"
@@ -330,9 +332,11 @@ bool StudyRun::finish_best() {
     result_.message = result_.best->failure->message;
     return false;
   }
-  fields_.stresses =
-      forward::part_stresses(fields_.mesh, fields_.inputs, fields_.solution);
+  forward::find_stresses(input_, fields_);
   result_.stress = forward::stress_figures(fields_);
+  result_.worst_loads = responses::worst_loads(
+      input_,
+      {fields_.inputs, fields_.mesh, fields_.solution, fields_.exclusion.what});
   result_.exclusion = fields_.exclusion;
   for (std::string& warning :
        forward::part_warnings(input_, fields_, result_.stress)) {
@@ -512,7 +516,7 @@ void StudyRun::add_ratio_errors() {
     double& error = result_.response_errors[static_cast<Eigen::Index>(r)];
     if (response.kind == case_data::ResponseKind::StressRatio) {
       const forward::StressFigures& figures =
-          result_.stress[static_cast<std::size_t>(response.load_case)];
+          result_.stress[case_data::shown_load_case(input_, response)];
       error = std::fmax(error,
                         result_.best->responses[static_cast<Eigen::Index>(r)] *
                             figures.peak_error / figures.max_von_mises);

@@ -16,6 +16,7 @@
 #include "pipeline/forward/element_errors.h"
 #include "pipeline/forward/forward_model.h"
 #include "pipeline/forward/stress_figures.h"
+#include "pipeline/responses/worst_loads.h"
 #include "pipeline/store/refreeze.h"
 #include "pipeline/store/study_store.h"
 #include "pipeline/study/front_figures.h"
@@ -73,8 +74,9 @@ struct RunResult {
   std::array<VectorX, accuracy::kEdgeFactors.size()> meshes;
   VectorX finer_film;  // the same with the film on finer facets; may be empty
   std::vector<forward::StressFigures>
-      stress;                    // of the best design, per load case
-  forward::Exclusion exclusion;  // what these leave out
+      stress;  // of the best design, per load case
+  std::vector<responses::WorstLoad> worst_loads;  // of the best design
+  forward::Exclusion exclusion;                   // what these leave out
   std::optional<forward::Adaptation> adaptation;  // at the initial design
   std::optional<forward::ElementErrors>
       element_errors;                          // the elements' part of them

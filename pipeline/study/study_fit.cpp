@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "pipeline/forward/scans.h"
+#include "pipeline/responses/scans.h"
 #include "pipeline/study/run_kind.h"
 #include "pipeline/study/scan_match.h"
 

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "pipeline/forward/responses.h"
+#include "pipeline/responses/responses.h"
 
 namespace meniscus::study {
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
@@ -100,22 +101,21 @@ void add_forces(const loads::LoadCase& load_case, const UnitSystem& units,
                 picture::PictureJob& job) {
   using Kind = picture::PictureLoadKind;
   const auto add = [&](const loads::Surfaces& surfaces, const Vec3& direction,
-                       Kind kind, const std::string& label) {
-    for (const std::string& surface : surfaces) {
-      if (direction.norm() > 0.0) {
-        job.loads.push_back({surface, direction, label, kind});
-      }
+                       Kind kind, const std::string& label,
+                       const std::optional<Vec3>& point = {}) {
+    if (direction.norm() > 0.0) {
+      job.loads.push_back({surfaces, direction, label, kind, point});
     }
   };
   for (const loads::RemoteLoad& load : load_case.remote_loads) {
     add(load.surfaces, load.force, Kind::Force,
-        load_label(load.force.norm(), units.force));
+        load_label(load.force.norm(), units.force), load.point);
     add(load.surfaces, load.moment, Kind::Moment,
-        moment_label(load.moment.norm(), units));
+        moment_label(load.moment.norm(), units), load.point);
   }
   for (const loads::BearingLoad& load : load_case.bearings) {
     add(load.surfaces, load.force, Kind::Force,
-        load_label(load.force.norm(), units.force));
+        load_label(load.force.norm(), units.force), load.point);
   }
   for (const loads::SurfaceForce& force : load_case.forces) {
     add(force.surfaces, force.total, Kind::Force,
@@ -141,7 +141,7 @@ void add_body_loads(const loads::LoadCase& load_case,
                     picture::PictureJob& job) {
   if (load_case.gravity.norm() > 0.0) {
     job.loads.push_back(
-        {"", load_case.gravity, "gravity", picture::PictureLoadKind::Body});
+        {{}, load_case.gravity, "gravity", picture::PictureLoadKind::Body});
   }
   const bool varied = std::any_of(
       load_case.tractions.begin(), load_case.tractions.end(),
@@ -171,7 +171,13 @@ picture::PictureJob of_load_case(picture::PictureJob job,
                                  const case_data::Case& input,
                                  const loads::LoadCase& load_case,
                                  const std::string& remark) {
-  job.load_case = fmt::format("'{}'{}", load_case.name, remark);
+  const bool from_any = std::ranges::any_of(
+      input.directions, [&](const case_data::DirectionsEntry& load) {
+        return load.name == load_case.name;
+      });
+  job.load_case =
+      fmt::format("'{}'{}{}", load_case.name,
+                  from_any ? ", from its worst direction" : "", remark);
   add_supports(load_case, job);
   add_forces(load_case, input.units, job);
   add_body_loads(load_case, job);
@@ -188,6 +194,23 @@ void add_job(picture::PictureJob job, picture::PictureKind kind,
   jobs.push_back(std::move(job));
 }
 
+/// Without the unit loads of loads from any direction that another shows.
+std::vector<std::size_t> shown_cases(const case_data::Case& input,
+                                     const case_data::EvaluatedCase& numbers) {
+  const bool with_worst = numbers.load_cases.size() > input.load_cases.size();
+  std::vector<std::size_t> shown;
+  for (std::size_t k = 0; k < numbers.load_cases.size(); ++k) {
+    const auto is_unit_load = [&](const case_data::DirectionsEntry& load) {
+      const auto first = static_cast<std::size_t>(load.first);
+      return with_worst && k >= first && k < first + 3;
+    };
+    if (std::ranges::none_of(input.directions, is_unit_load)) {
+      shown.push_back(k);
+    }
+  }
+  return shown;
+}
+
 /// part.png, film.png and overview.png of the worst load case and, `with_each`,
 /// a part_NAME.png of each where there are several. `shape(k)`: the part under
 /// load case k.
@@ -198,16 +221,18 @@ std::vector<picture::PictureJob> all_pictures(
     const fs::path& folder, const Shape& shape) {
   using Kind = picture::PictureKind;
   std::vector<picture::PictureJob> jobs;
-  const std::size_t count = numbers.load_cases.size();
+  const std::vector<std::size_t> shown = shown_cases(input, numbers);
+  const bool several = with_each && shown.size() > 1;
   const std::string remark =
-      with_each && count > 1 ? fmt::format(" (the worst of {})", count) : "";
+      several ? fmt::format(" (the worst of {})", shown.size()) : "";
   picture::PictureJob job =
       of_load_case(common, input, numbers.load_cases[worst], remark);
   shape(worst, "", job);
   add_job(job, Kind::Part, folder / "part.png", jobs);
   add_job(job, Kind::Film, folder / "film.png", jobs);
   add_job(job, Kind::Overview, folder / "overview.png", jobs);
-  for (std::size_t k = 0; k < count && with_each && count > 1; ++k) {
+  for (std::size_t i = 0; i < shown.size() && several; ++i) {
+    const std::size_t k = shown[i];
     const std::string ending = "_" + numbers.load_cases[k].name;
     picture::PictureJob each = of_load_case(
         common, input, numbers.load_cases[k], k == worst ? remark : "");

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include <nlohmann/json.hpp>
 
@@ -17,6 +18,8 @@ using Json = nlohmann::ordered_json;
 namespace {
 
 constexpr int kCurvePoints = 96;
+
+using NameList = std::vector<std::string>;
 
 Json number(double value) {
   return std::isfinite(value) ? Json(value) : Json();
@@ -163,28 +166,25 @@ Json page_loads(const case_data::Case& input,
   Json cases = Json::array();
   for (const loads::LoadCase& load_case : inputs.load_cases) {
     Json items = Json::array();
-    const auto add = [&](const std::string& on, const char* kind, Json vector) {
-      items.push_back(
-          {{"on", on}, {"kind", kind}, {"vector", std::move(vector)}});
+    const auto add = [&](const loads::Surfaces& on, const char* kind,
+                         Json vector, const std::optional<Vec3>& at = {}) {
+      items.push_back({{"on", static_cast<const NameList&>(on)},
+                       {"kind", kind},
+                       {"vector", std::move(vector)},
+                       {"at", at ? vector_json(*at) : Json()}});
     };
     for (const loads::SurfaceForce& force : load_case.forces) {
-      for (const std::string& on : force.surfaces) {
-        add(on, "force", vector_json(force.total));
-      }
+      add(force.surfaces, "force", vector_json(force.total));
     }
     for (const loads::BearingLoad& load : load_case.bearings) {
-      for (const std::string& on : load.surfaces) {
-        add(on, "force", vector_json(load.force));
-      }
+      add(load.surfaces, "force", vector_json(load.force), load.point);
     }
     for (const loads::RemoteLoad& load : load_case.remote_loads) {
-      for (const std::string& on : load.surfaces) {
-        if (load.force.norm() > 0.0) {
-          add(on, "force", vector_json(load.force));
-        }
-        if (load.moment.norm() > 0.0) {
-          add(on, "moment", vector_json(load.moment));
-        }
+      if (load.force.norm() > 0.0) {
+        add(load.surfaces, "force", vector_json(load.force), load.point);
+      }
+      if (load.moment.norm() > 0.0) {
+        add(load.surfaces, "moment", vector_json(load.moment), load.point);
       }
     }
     for (const loads::SurfacePressure& pressure : load_case.pressures) {

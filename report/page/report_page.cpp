@@ -9,6 +9,7 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/json.h"
+#include "pipeline/forward/worst_cases.h"
 #include "pipeline/store/stored_case.h"
 #include "report/page/page_case.h"
 #include "report/page/page_evolved.h"
@@ -190,8 +191,10 @@ void add_run(const fs::path& folder, Room room, Json& page) {
     solids = solids_of(run->input);
     page["case"] = page_case(run->input);
     page["curves"] = page_curves(run->input, run->design);
-    page["loads"] =
-        page_loads(run->input, case_data::evaluate(run->input, run->design));
+    case_data::EvaluatedCase inputs =
+        case_data::evaluate(run->input, run->design);
+    forward::add_worst_cases(run->input, page["result"], inputs);
+    page["loads"] = page_loads(run->input, inputs);
     page["gradients"] = page_gradients(run->input, run->records, run->design);
   }
   if (has_file(folder / "history.csv")) {

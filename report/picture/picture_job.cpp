@@ -179,10 +179,13 @@ PictureJob to_job(const Cbor& json, StoredShapes& shapes) {
       throw InvalidInput("picture jobs: a load of kind " +
                          std::to_string(load_kind));
     }
-    job.loads.push_back({load.at("surface").get<std::string>(),
+    job.loads.push_back({load.at("surfaces").get<std::vector<std::string>>(),
                          to_vector(load.at("direction")),
                          load.at("label").get<std::string>(),
                          static_cast<PictureLoadKind>(load_kind)});
+    if (load.contains("point")) {
+      job.loads.back().point = to_vector(load.at("point"));
+    }
   }
   json.at("load_case").get_to(job.load_case);
   json.at("field_ending").get_to(job.field_ending);
@@ -207,10 +210,13 @@ PictureJob to_job(const Cbor& json, StoredShapes& shapes) {
 Cbor to_json(const PictureJob& job, Shapes& shapes) {
   Cbor loads = Cbor::array();
   for (const PictureLoad& load : job.loads) {
-    loads.push_back({{"surface", load.surface},
+    loads.push_back({{"surfaces", load.surfaces},
                      {"direction", to_json(load.direction)},
                      {"label", load.label},
                      {"kind", static_cast<int>(load.kind)}});
+    if (load.point) {
+      loads.back()["point"] = to_json(*load.point);
+    }
   }
   return {{"kind", kKinds.at(static_cast<std::size_t>(job.kind))},
           {"output", job.output},

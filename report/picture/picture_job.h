@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,13 +26,16 @@ enum class PictureLoadKind {
   Body       // an arrow beside the part: gravity
 };
 
-/// What acts on a surface, or on the whole part.
+/// What acts on surfaces together, or on the whole part.
 struct PictureLoad {
-  std::string surface;
+  std::vector<std::string> surfaces;
   Vec3 direction = Vec3::Zero();  // its length is relative to the others' of
                                   // its kind
   std::string label;              // "40 kN"
   PictureLoadKind kind = PictureLoadKind::Force;
+  /// Of forces and moments of several surfaces: where they act; without it the
+  /// middle of these [length].
+  std::optional<Vec3> point = {};
 };
 
 /// A shape of a picture: in memory, else in a file (UTF-8).

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <utility>
+#include <vector>
 
 #include <Eigen/Geometry>
 
@@ -21,6 +23,7 @@ constexpr double kArrowLength = 0.17;  // of the largest force
 constexpr double kSmallArrow = 0.055;  // of pressures and tractions
 constexpr double kArrowGap = 0.008;
 constexpr double kTurnRadius = 0.065;  // of a moment's arrow
+constexpr double kLine = 0.0022;       // to surfaces that share a load
 constexpr double kBlockDepth = 0.035;  // of a support
 constexpr double kCoatDepth = 0.014;
 constexpr Colour kLoadColour = {0.80, 0.18, 0.22};
@@ -142,16 +145,27 @@ class LoadDrawing {
       draw_beside(load);
       return;
     }
-    const SurfacePatch patch = surface_patch(mesh_, load.surface);
-    if (!patch.found()) {
+    std::vector<SurfacePatch> patches;
+    for (const std::string& surface : load.surfaces) {
+      SurfacePatch patch = surface_patch(mesh_, surface);
+      if (patch.found()) {
+        patches.push_back(std::move(patch));
+      }
+    }
+    const bool spread =
+        load.kind == Kind::Pressure || load.kind == Kind::Traction;
+    if (!spread && patches.size() > 1) {
+      draw_shared(load, patches);
       return;
     }
-    if (load.kind == Kind::Force) {
-      draw_force(load, patch);
-    } else if (load.kind == Kind::Moment) {
-      draw_moment(load, patch);
-    } else {
-      draw_spread(load, patch);
+    for (const SurfacePatch& patch : patches) {
+      if (load.kind == Kind::Force) {
+        draw_force(load, patch);
+      } else if (load.kind == Kind::Moment) {
+        draw_moment(load, anchor_of(patch, to_eye_));
+      } else {
+        draw_spread(load, patch);
+      }
     }
   }
 
@@ -171,22 +185,54 @@ class LoadDrawing {
   void draw_force(const picture::PictureLoad& load, const SurfacePatch& patch) {
     const Vec3 along = load.direction.normalized();
     const Anchor anchor = anchor_of(patch, to_eye_);
-    const ArrowPlace arrow = place_arrow(
-        mesh_, anchor, along, kArrowLength * diagonal_ * share(load), gap_);
+    draw_arrow(load, anchor.at,
+               place_arrow(mesh_, anchor, along,
+                           kArrowLength * diagonal_ * share(load), gap_));
+  }
+
+  /// What several surfaces carry together.
+  void draw_shared(const picture::PictureLoad& load,
+                   const std::vector<SurfacePatch>& patches) {
+    Vec3 middle = Vec3::Zero();
+    for (const SurfacePatch& patch : patches) {
+      middle += patch.centre / static_cast<double>(patches.size());
+    }
+    const Vec3 at = load.point.value_or(middle);
+    Points ends = {at};
+    std::vector<Edge> lines;
+    for (const SurfacePatch& patch : patches) {
+      lines.push_back({0, static_cast<int>(ends.size())});
+      ends.push_back(patch.centre);
+    }
+    if (load.kind == picture::PictureLoadKind::Moment) {
+      draw_moment(load, {at, Vec3::Zero()});
+    } else {
+      const ArrowPlace arrow =
+          place_free_arrow(mesh_, at, load.direction.normalized(), to_eye_,
+                           kArrowLength * diagonal_ * share(load), gap_);
+      draw_arrow(load, at, arrow);
+      lines.push_back({0, static_cast<int>(ends.size())});
+      ends.push_back(arrow.tail);
+    }
+    panel_.add_tubes(ends, lines, kLine * diagonal_, kLoadColour);
+    panel_.show(ends);
+  }
+
+  /// `at`: where it acts; the label is at the arrow's other end.
+  void draw_arrow(const picture::PictureLoad& load, const Vec3& at,
+                  const ArrowPlace& arrow) {
+    const Vec3 along = load.direction.normalized();
     panel_.add_arrow(arrow.tail, arrow.tip, kLoadColour);
-    const bool ends_there =
-        (arrow.tip - anchor.at).norm() < (arrow.tail - anchor.at).norm();
+    const bool ends_there = (arrow.tip - at).norm() < (arrow.tail - at).norm();
     label(ends_there ? arrow.tail : arrow.tip,
           ends_there ? Vec3(-along) : along, load.label);
   }
 
   /// Three quarters of a turn about the axis, right-handed.
-  void draw_moment(const picture::PictureLoad& load,
-                   const SurfacePatch& patch) {
+  void draw_moment(const picture::PictureLoad& load, const Anchor& anchor) {
     constexpr int kSteps = 48;
     constexpr double kTurn = 1.5 * EIGEN_PI;
     const Vec3 axis = load.direction.normalized();
-    const Anchor anchor = anchor_of(patch, to_eye_);
     const double radius = kTurnRadius * diagonal_ * share(load);
     // Outside the part even where it stands upright.
     const double upright = axis.cross(anchor.out).norm();

@@ -9,8 +9,9 @@ namespace meniscus::render {
 
 /// Arrows on the outside of the part: straight ones for forces, about their
 /// axis for moments, many small ones for pressures and tractions, one beside
-/// the part for gravity. `diagonal`: the part's size [length]; `text`: size of
-/// labels [pixel].
+/// the part for gravity. What several surfaces carry together is one arrow at
+/// its point, with a line to each of them. `diagonal`: the part's size
+/// [length]; `text`: size of labels [pixel].
 void draw_loads(Panel& panel, const picture::PictureJob& job,
                 const SurfaceMesh& mesh, double diagonal, int text);
 

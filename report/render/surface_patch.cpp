@@ -1,8 +1,10 @@
 #include "report/render/surface_patch.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include <Eigen/Geometry>
 
@@ -103,6 +105,52 @@ std::vector<double> crossings(const SurfaceMesh& mesh, const Vec3& from,
   return found;
 }
 
+namespace {
+
+/// Along `along` from `at`, beyond all of the part.
+ArrowPlace beyond_part(const SurfaceMesh& mesh, const Vec3& at,
+                       const Vec3& along, double length, double gap) {
+  const std::vector<double> hits = crossings(mesh, at, along);
+  const double beyond = hits.empty() ? 0.0 : hits.back();
+  const Vec3 start = at + (beyond + gap) * along;
+  return {start, start + length * along};
+}
+
+}  // namespace
+
+ArrowPlace place_free_arrow(const SurfaceMesh& mesh, const Vec3& at,
+                            const Vec3& along, const Vec3& to_eye,
+                            double length, double gap) {
+  // From within the part a ray crosses its surface an odd number of times.
+  const auto is_free = [&](const Vec3& from, const Vec3& towards) {
+    const std::vector<double> hits = crossings(mesh, from, towards);
+    return hits.size() % 2 == 0 && (hits.empty() || hits.front() >= length);
+  };
+  const auto is_seen = [&](const Vec3& from, const Vec3& towards) {
+    return std::ranges::all_of(std::array{0.0, 0.5, 1.0}, [&](double part) {
+      return crossings(mesh, from + part * length * towards, to_eye).empty();
+    });
+  };
+  constexpr int kFarthest = 12;  // half lengths
+  std::optional<ArrowPlace> hidden;
+  for (int k = 0; k <= kFarthest; ++k) {
+    for (const Vec3& towards : {along, Vec3(-along)}) {
+      const Vec3 near = at + 0.5 * k * length * towards;
+      if (!is_free(near, towards)) {
+        continue;
+      }
+      const Vec3 far = near + length * towards;
+      const ArrowPlace place = towards.dot(along) > 0.0 ? ArrowPlace{near, far}
+                                                        : ArrowPlace{far, near};
+      if (is_seen(near, towards)) {
+        return place;
+      }
+      hidden = hidden ? hidden : place;
+    }
+  }
+  return hidden.value_or(beyond_part(mesh, at, along, length, gap));
+}
+
 ArrowPlace place_arrow(const SurfaceMesh& mesh, const Anchor& anchor,
                        const Vec3& along, double length, double gap) {
   const auto is_free = [&](const Vec3& from, const Vec3& to) {
@@ -118,10 +166,7 @@ ArrowPlace place_arrow(const SurfaceMesh& mesh, const Anchor& anchor,
   if (presses ? is_free(tip, tail) : is_free(root, tip)) {
     return {tail, tip};
   }
-  const std::vector<double> hits = crossings(mesh, anchor.at, along);
-  const double beyond = hits.empty() ? 0.0 : hits.back();
-  const Vec3 start = anchor.at + (beyond + gap) * along;
-  return {start, start + length * along};
+  return beyond_part(mesh, anchor.at, along, length, gap);
 }
 
 std::vector<int> spread_facets(const SurfaceMesh& mesh,

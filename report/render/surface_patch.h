@@ -49,6 +49,13 @@ struct ArrowPlace {
 ArrowPlace place_arrow(const SurfaceMesh& mesh, const Anchor& anchor,
                        const Vec3& along, double length, double gap);
 
+/// The same for a place off the surface, as the middle of a pin between two
+/// lugs: it begins there, or ends there where the part is in the way, or as far
+/// along its line as it must to be seen.
+ArrowPlace place_free_arrow(const SurfaceMesh& mesh, const Vec3& at,
+                            const Vec3& along, const Vec3& to_eye,
+                            double length, double gap);
+
 /// Facets of a patch with about `spacing` between their middles, `most` at
 /// most.
 std::vector<int> spread_facets(const SurfaceMesh& mesh,

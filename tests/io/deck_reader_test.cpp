@@ -278,7 +278,7 @@ std::vector<Refused> refused_steps() {
           {"Component", "*CLOAD\n7, 4, 1.\n", at + 1, "component '4'"},
           {"NotANumber", "*CLOAD\n7, 1, nan\n", at + 1, "no finite number"},
           {"Amplitude", "*CLOAD, AMPLITUDE=A\n7, 1, 1.\n", at, "AMPLITUDE"},
-          {"Enforced", "*BOUNDARY\n7, 1, 1, 0.5\n", at + 1, "enforced"},
+          {"Enforced", "*BOUNDARY\n7, 1, 1, x\n", at + 1, "displacement"},
           {"FaceFive", "*DLOAD\n1, P5, 1.\n", at + 1, "P1 to P4"},
           {"NoElement", "*DLOAD\n2, P1, 1.\n", at + 1, "no element 2"},
           {"NoSurface", "*DSLOAD\nlid, P, 1.\n", at + 1, "no surface 'lid'"},

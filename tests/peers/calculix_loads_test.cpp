@@ -12,6 +12,9 @@
 #include "fea/elastic/elasticity.h"
 #include "fea/element/point_stress.h"
 #include "fea/loads/body_loads.h"
+#include "io/deck/deck_reader.h"
+#include "pipeline/decks/deck_part.h"
+#include "pipeline/decks/solve_deck.h"
 #include "pipeline/results/calculix_export.h"
 #include "tests/support/calculix.h"
 #include "tests/support/not_here.h"
@@ -323,6 +326,14 @@ TEST(EnforcedInCalculix, MovedSurfacesGiveTheSameDisplacementsAndStresses) {
                   element::point_stress(mesh, {aluminium()}, u).stress,
                   theirs[0].stress),
               kStress);
+    // The same deck read back: node by node.
+    const decks::DeckResult read =
+        decks::solve_deck(decks::make_deck_part(deck::read_deck_text(
+                              io::calculix_deck(mesh, deck), "moved.inp")),
+                          nullptr);
+    EXPECT_LE(relative_difference(read.fields.solution.displacements[0],
+                                  theirs[0].displacement),
+              kDisplacement);
   }
 }
 

@@ -53,6 +53,7 @@ struct Job {
   int order;
   bool bent;
   bool orthotropic;
+  bool pinned = false;  // pushed by a rigid pin that turns about y alone
 };
 
 class EigenvaluesInCalculix : public testing::TestWithParam<Job> {
@@ -74,7 +75,16 @@ class EigenvaluesInCalculix : public testing::TestWithParam<Job> {
     loads::LoadCase load_case;
     load_case.name = "push";
     load_case.supports = {{"x0", true, true, true}};
-    load_case.forces = {{"x1", {-500.0, 30.0, 0.0}}};
+    if (!GetParam().pinned) {
+      load_case.forces = {{"x1", {-500.0, 30.0, 0.0}}};
+      return load_case;
+    }
+    load_case.pins = {{.surfaces = "x1",
+                       .fix_rotation = {true, false, true},
+                       .point = {61.0, 2.0, 3.0}}};
+    load_case.remote_loads = {{.surfaces = "x1",
+                               .point = {60.0, 3.0, 2.0},
+                               .force = {-500.0, 30.0, 0.0}}};
     return load_case;
   }
 
@@ -87,8 +97,9 @@ class EigenvaluesInCalculix : public testing::TestWithParam<Job> {
 TEST_P(EigenvaluesInCalculix, FrequenciesAreTheSame) {
   const auto theirs = run_calculix_eigenvalues(deck(), "*FREQUENCY\n6");
   ASSERT_EQ(theirs.size(), 6U);
+  const elastic::ElasticModel model(mesh_, {material_}, cases_);
   const modes::NaturalModes ours = modes::natural_modes(
-      mesh_, {material_}, cases_[0],
+      model, mesh_, cases_, 0,
       {.count = 6, .mass = solver::MassRule::StiffnessPoints});
   ASSERT_EQ(ours.frequencies.size(), 6U);
   for (std::size_t k = 0; k < 6; ++k) {
@@ -118,7 +129,9 @@ INSTANTIATE_TEST_SUITE_P(
                     Job{"StrutTet10", 2, false, false},
                     Job{"BentTet10", 2, true, false},
                     Job{"BentTet4Orthotropic", 1, true, true},
-                    Job{"StrutTet10Orthotropic", 2, false, true}),
+                    Job{"StrutTet10Orthotropic", 2, false, true},
+                    Job{"PinnedTet4", 1, false, true, true},
+                    Job{"PinnedTet10", 2, false, false, true}),
     [](const auto& job) { return job.param.name; });
 
 }  // namespace

@@ -52,7 +52,7 @@ class Decks(ProgramTest):
     def test_wrong_decks_leave_nothing(self):
         for old, new, line, says in (
                 ("*NODE FILE", "*CONTACT PAIR", 39, "common nodes"),
-                ("FOOT, 1, 3", "FOOT, 1, 3, 0.1", 28, "only 0 is known"),
+                ("FOOT, 1, 3", "FOOT, 1, 3, 0.1", 28, "before the first"),
                 ("5, 3, 1.\n", "5, 3, x\n", 35, "no finite number"),
                 ("0.3\n", "0.5\n", 19, "Poisson")):
             name = self.write(DECK.replace(old, new, 1))

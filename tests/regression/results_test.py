@@ -133,6 +133,14 @@ class Results(ProgramTest):
         # The clamp, where it is not left out.
         result["stress"]["push"]["no_limit"] = (
             asked["stress"]["push"]["no_limit"])
+        # A load from any direction.
+        anywhere = CASE.replace('force = ["load", 0, 0]', 'size = "load"')
+        _, worst = self.run_case(anywhere.split("[responses.summit]")[0] +
+                                 '[study]\nkind = "analyse"\n', "anywhere")
+        result["worst_directions"] = worst["worst_directions"]
+        for load_case, key in (("push", "direction"),
+                               ("push_x", "unit_load")):
+            result["stress"]["push"][key] = worst["stress"][load_case][key]
         rows = documented()
         self.assertEqual(set(result) - ELSEWHERE,
                          set(rows) - set(OTHER_STUDIES) - ELSEWHERE)

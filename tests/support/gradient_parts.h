@@ -8,8 +8,8 @@
 namespace meniscus::gradient_parts {
 
 /// Distorted block of two regions; ten-node elements are curved.
-inline TetMesh block(int order) {
-  TetMesh mesh = parts::distorted_brick({1.5, 1.0, 1.2}, 3);
+inline TetMesh block(int order, int cells = 3) {
+  TetMesh mesh = parts::distorted_brick({1.5, 1.0, 1.2}, cells);
   for (int e = 0; e < mesh.element_count(); e += 3) {
     mesh.element_region[e] = 1;
   }

@@ -74,9 +74,12 @@ export interface CurveData {
 }
 
 export interface LoadItem {
-  on: string;
+  /** Surfaces that carry it together. */
+  on: string[];
   kind: "force" | "moment" | "pressure" | "traction" | "support" | "spring";
   vector: [number, number, number] | null;
+  /** Of forces and moments through a point. */
+  at: [number, number, number] | null;
 }
 
 export interface LoadCase {
@@ -159,6 +162,10 @@ export interface Distribution {
 export interface StressFigures {
   max_von_mises: number | null;
   position?: number[];
+  /** Of a load from any direction: one of those that it is made of. */
+  unit_load?: boolean;
+  /** Of one that shows such a load: the worst, a unit vector. */
+  direction?: number[];
   safety_factor?: {
     smallest: number | null;
     von_mises: number;
@@ -249,6 +256,8 @@ export interface Result {
   worst_load_case?: string;
   /** Means over the volume beside the peaks they are bounded for. */
   norm_peaks?: Record<string, NormPeak>;
+  /** Of loads from any direction: the worst for each response, a unit vector. */
+  worst_directions?: Record<string, { load_case: string; direction: (number | null)[] }>;
   envelopes?: Record<string, { most?: string; least?: string; value: number | null }>;
   buckling?: Record<
     string,

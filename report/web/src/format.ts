@@ -115,3 +115,9 @@ function superscript(value: number): string {
     c === "-" ? "\u207b" : raised[Number(c)],
   );
 }
+
+/** "0.6, 0, \u22120.8" of a unit vector. */
+export function direction(d: (number | null)[]): string {
+  const nothing = 5e-4; // below what three digits show
+  return d.map((x) => number(x !== null && Math.abs(x) < nothing ? 0 : x, 3)).join(", ");
+}

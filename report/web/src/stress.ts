@@ -2,7 +2,7 @@ import * as Plot from "@observablehq/plot";
 import { chart, row, tick } from "./charts";
 import type { Distribution, PageData } from "./data";
 import { h, section, table } from "./dom";
-import { number, quantity, words } from "./format";
+import { direction, number, quantity, words } from "./format";
 
 function histogram(d: Distribution, what: string, unit: string): HTMLElement {
   const step = d.peak / d.histogram.length;
@@ -32,7 +32,7 @@ function histogram(d: Distribution, what: string, unit: string): HTMLElement {
 
 /** How evenly the part is stressed, per load case. */
 export function stressSection(data: PageData): HTMLElement | null {
-  const cases = Object.entries(data.result?.stress ?? {});
+  const cases = Object.entries(data.result?.stress ?? {}).filter(([, f]) => !f.unit_load);
   const units = data.result!.units!;
   const children: HTMLElement[] = [];
   if (cases.length > 1) {
@@ -42,7 +42,7 @@ export function stressSection(data: PageData): HTMLElement | null {
         "Load cases",
         [{ head: "load case" }, { head: "largest von Mises stress", numeric: true }, { head: "safety against yield", numeric: true }, { head: "" }],
         cases.map(([name, f]) => [
-          words(name),
+          words(name) + (f.direction ? ` (worst along ${direction(f.direction)})` : ""),
           quantity(f.max_von_mises, units.pressure),
           number(f.safety_factor?.smallest, 3),
           name === worst ? h("strong", {}, "the worst") : "",

@@ -1,6 +1,6 @@
 import type { PageData, Result, StressFigures } from "./data";
 import { h, section, table } from "./dom";
-import { count, number, percent, quantity, seconds, words } from "./format";
+import { count, direction, number, percent, quantity, seconds, words } from "./format";
 import { inputsOf, responsesOf } from "./measures";
 
 const STATUS: Record<string, string> = {
@@ -76,7 +76,8 @@ function worstLoadCase(result: Result): [string, StressFigures, number] | null {
   const found =
     cases.find(([name]) => name === result.worst_load_case) ??
     cases.reduce((most, one) => (worse(one[1], most[1]) ? one : most));
-  return [found[0], found[1], cases.length > 1 ? cases.length : 0];
+  const acting = cases.filter(([, f]) => !f.unit_load).length;
+  return [found[0], found[1], acting > 1 ? acting : 0];
 }
 
 /** What the study makes least, then the others in the file's order: four. */
@@ -112,6 +113,12 @@ export function keyFigures(data: PageData): HTMLElement | null {
     cards.push(card(seconds(result.seconds.total), `${count(result.evaluations)} evaluations`));
   }
   return cards.length > 0 ? h("dl", { class: "cards" }, ...cards) : null;
+}
+
+/** " (worst load along 0.6, 0, 0.8)" of a load from any direction. */
+function worstDirection(result: Result, name: string): string {
+  const worst = result.worst_directions?.[name];
+  return worst ? ` (worst load along ${direction(worst.direction)})` : "";
 }
 
 /** Parameters and responses with their errors. */
@@ -158,7 +165,7 @@ export function answerSection(data: PageData): HTMLElement | null {
           "Responses",
           [{ head: "response" }, { head: "answer", numeric }, { head: "mesh error", numeric }, { head: "at the start", numeric }],
           responses.map(([name, value]) => [
-            words(name),
+            words(name) + worstDirection(result, name),
             outputs.text(name, value),
             outputs.error(name, result.response_errors?.[name]),
             outputs.text(name, result.start?.responses[name]),

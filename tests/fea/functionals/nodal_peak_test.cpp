@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <omp.h>
+#include <random>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -139,6 +140,52 @@ TEST_P(NodalPeaks, FatigueByBothStatesAndNodes) {
     SCOPED_TRACE(excess);
     expect_derivatives(functionals::goodman_ratio(kEndurance), 2, excess);
     expect_derivatives(functionals::crossland_ratio(kEndurance), 2, excess);
+  }
+}
+
+TEST_P(NodalPeaks, WorstDirectionByAllStatesAndNodes) {
+  for (const double half_angle : {0.0, 0.4, 3.141592653589793}) {
+    SCOPED_TRACE(half_angle);
+    expect_derivatives(functionals::worst_von_mises_ratio(
+                           kAllowable, {Vec3(0.6, 0.0, 0.8), half_angle}),
+                       3, 0.3);
+  }
+}
+
+/// Of random stresses no direction is worse than the one told.
+TEST(WorstStress, NoSampleOfTheConeIsWorse) {
+  constexpr double kAlike = 1e-12;
+  std::mt19937 random(9);
+  std::normal_distribution<double> normal;
+  const NodeCriterion plain = functionals::von_mises_ratio({2.0});
+  for (const double half_angle : {0.3, 1.0, 3.141592653589793}) {
+    const Cone cone{Vec3(0.48, -0.64, 0.6), half_angle};
+    std::vector<element::Stress> states(3);
+    for (element::Stress& stress : states) {
+      for (double& s : stress) {
+        s = normal(random);
+      }
+    }
+    const auto at = [&](const Vec3& d) {
+      element::Stress sum{};
+      for (int k = 0; k < 3; ++k) {
+        for (int c = 0; c < 6; ++c) {
+          sum[c] += d[k] * states[k][c];
+        }
+      }
+      return plain.value(0, 0.0, {&sum, 1}, {});
+    };
+    const double worst = functionals::worst_von_mises_ratio({2.0}, cone)
+                             .value(0, 0.0, states, {});
+    EXPECT_NEAR(at(functionals::worst_stress_direction(states, cone)), worst,
+                kAlike * worst);
+    for (int s = 0; s < 10000; ++s) {
+      const Vec3 d =
+          Vec3(normal(random), normal(random), normal(random)).normalized();
+      if (d.dot(cone.axis) >= std::cos(half_angle)) {
+        EXPECT_LE(at(d), worst * (1.0 + kAlike));
+      }
+    }
   }
 }
 

@@ -16,6 +16,7 @@
 #include "fea/modes/modes.h"
 #include "fea/supports/enforced.h"
 #include "fea/supports/supports.h"
+#include "tests/support/coupled_freedom.h"
 #include "tests/support/derivatives.h"
 #include "tests/support/gradient_parts.h"
 
@@ -44,65 +45,6 @@ VectorX solve(const TetMesh& mesh,
   return solution.displacements[0];
 }
 
-/// Columns: the displacements that supports and pins leave, and what they
-/// enforce.
-struct Freedom {
-  Eigen::MatrixXd columns;
-  VectorX enforced;
-};
-
-Freedom freedom_of(const TetMesh& mesh, const loads::LoadCase& load_case) {
-  const auto size = static_cast<Eigen::Index>(3 * mesh.nodes.size());
-  std::vector<char> held(static_cast<std::size_t>(size), 0);
-  Freedom freedom{Eigen::MatrixXd(size, 0), VectorX::Zero(size)};
-  const auto add = [&](const VectorX& column) {
-    freedom.columns.conservativeResize(Eigen::NoChange,
-                                       freedom.columns.cols() + 1);
-    freedom.columns.rightCols(1) = column;
-  };
-  for (const loads::Support& support : load_case.supports) {
-    const std::array<bool, 3> fix = {support.fix_x, support.fix_y,
-                                     support.fix_z};
-    for (const int node : loads::surface_weights(mesh, support.surface).nodes) {
-      for (int k = 0; k < 3; ++k) {
-        if (fix[k]) {
-          held[static_cast<std::size_t>(3 * node + k)] = 1;
-          freedom.enforced[3 * node + k] =
-              loads::value_of(support.displacement)[k];
-        }
-      }
-    }
-  }
-  for (const loads::RigidPin& pin : load_case.pins) {
-    const std::vector<int> nodes =
-        loads::surface_weights(mesh, pin.surfaces).nodes;
-    for (int k = 0; k < 6; ++k) {
-      VectorX motion = VectorX::Zero(size);
-      for (const int node : nodes) {
-        const Vec3 axis = Vec3::Unit(k % 3);
-        motion.segment<3>(3L * node) =
-            k < 3 ? axis : axis.cross(mesh.nodes[node] - pin.point).eval();
-        for (int c = 0; c < 3; ++c) {
-          held[static_cast<std::size_t>(3 * node + c)] = 1;
-        }
-      }
-      if (k < 3 ? pin.fix[k] : pin.fix_rotation[k - 3]) {
-        freedom.enforced += (k < 3 ? loads::value_of(pin.displacement)[k]
-                                   : loads::value_of(pin.rotation)[k - 3]) *
-                            motion;
-      } else {
-        add(motion);
-      }
-    }
-  }
-  for (Eigen::Index i = 0; i < size; ++i) {
-    if (held[static_cast<std::size_t>(i)] == 0) {
-      add(VectorX::Unit(size, i));
-    }
-  }
-  return freedom;
-}
-
 /// E^T K E by a dense factor.
 VectorX by_hand(const TetMesh& mesh,
                 const std::vector<element::Material>& materials,
@@ -111,7 +53,7 @@ VectorX by_hand(const TetMesh& mesh,
   solver::BlockMatrix<double> matrix;
   EXPECT_FALSE(solver::assemble(table, mesh.nodes,
                                 element::elastic_laws(materials), matrix));
-  const Freedom freedom = freedom_of(mesh, load_case);
+  const parts::CoupledFreedom freedom = parts::coupled_freedom(mesh, load_case);
   const Eigen::MatrixXd& E = freedom.columns;
   Eigen::MatrixXd KE(E.rows(), E.cols());
   for (Eigen::Index k = 0; k < E.cols(); ++k) {
@@ -480,15 +422,11 @@ TEST(Pins, WhatDoesNotFitIsRefused) {
   expect_refused<InvalidInput>(load_case, "support on 'z0'", "another support");
 }
 
-TEST(Pins, EigenvalueProblemsRefuseThemByName) {
+TEST(Pins, ModesOfPartsThatAreFreeRefuseThemByName) {
   const TetMesh mesh = shapes::brick({4.0, 1.0, 1.0}, 4, 2, 2);
-  const elastic::ElasticModel model(mesh, {parts::steel()}, {on_a_pin()});
-  EXPECT_THAT(
-      [&] { modes::natural_modes(model, mesh, {on_a_pin()}, 0); },
-      testing::ThrowsMessage<InvalidInput>(AllOf(
-          HasSubstr("'pin'"), HasSubstr("rigid pins"), HasSubstr("spread"))));
-  EXPECT_THROW(modes::natural_modes(mesh, {parts::steel()}, on_a_pin()),
-               InvalidInput);
+  EXPECT_THAT([&] { modes::natural_modes(mesh, {parts::steel()}, on_a_pin()); },
+              testing::ThrowsMessage<InvalidInput>(
+                  AllOf(HasSubstr("'pin'"), HasSubstr("rigid pins"))));
 }
 
 TEST(Pins, PetscRefusesThemAndEnforcedDisplacementsByName) {

@@ -107,7 +107,13 @@ TEST(SolveDeck, OurOwnDecksGiveTheSameDisplacements) {
   other.supports = {{"y0", true, true, true}};
   other.pressures = {{"x1", 3.0}};
   const TetMesh brick = shapes::brick({2.0, 3.0, 4.0}, 3, 3, 3);
-  expect_same({brick, {pulled, other}, {parts::steel()}});
+  loads::LoadCase moved{.name = "moved"};
+  moved.supports = {{"x0", true, true, true},
+                    {.surface = "x1",
+                     .fix_x = true,
+                     .fix_z = true,
+                     .displacement = Vec3(0.02, 0.0, -0.01)}};
+  expect_same({brick, {pulled, other, moved}, {parts::steel()}});
   TetMesh two = shapes::straight_quadratic(brick);
   for (int e = 0; e < two.element_count(); e += 2) {
     two.element_region[static_cast<std::size_t>(e)] = 1;
@@ -158,6 +164,27 @@ TEST(SolveDeck, FiguresOfACubeUnderPressure) {
   EXPECT_EQ(result.steps[1].frequencies->frequencies.size(), 2U);
   ASSERT_TRUE(result.steps[2].buckling);
   EXPECT_FALSE(result.steps[2].buckling->failure);
+}
+
+TEST(SolveDeck, EnforcedDisplacementsStretchACube) {
+  const decks::DeckResult result = solve(
+      "*STEP\n*STATIC\n*BOUNDARY\nTOP, 3, 3, 0.02\n*END STEP\n"
+      "*STEP\n*STATIC\n*END STEP\n"
+      "*STEP\n*STATIC\n*BOUNDARY\nTOP, 3, 3, -0.01\n*END STEP\n");
+  ASSERT_EQ(result.steps.size(), 3U);
+  const std::vector<double> moved = {0.02, 0.02, -0.01};  // it stands
+  for (std::size_t s = 0; s < moved.size(); ++s) {
+    for (std::size_t i = 0; i < 8; ++i) {
+      const Vec3& x = result.fields.mesh.nodes[i];
+      const Vec3 exact = moved[s] * Vec3(-0.25 * x.x(), -0.25 * x.y(), x.z());
+      EXPECT_LE((result.fields.solution.displacements[s].segment<3>(
+                     static_cast<Eigen::Index>(3 * i)) -
+                 exact)
+                    .norm(),
+                1e-9)
+          << s;
+    }
+  }
 }
 
 TEST(SolveDeck, WritesItsFiles) {

@@ -193,6 +193,36 @@ TEST(DesignGradient, OfEigenvaluesIsExact) {
   expect_exact(eigenvalues(), Eigen::Vector2d(0.3, 50.0));
 }
 
+// Of a strut that swings about a bolt under it, its head kept from going
+// sideways.
+TEST(DesignGradient, OfEigenvaluesOnRigidPinsIsExact) {
+  std::string text = changed(
+      eigenvalues(),
+      "[{ on = \"head_pad\", force = [\"load / 10\", 0, \"-thrust\"] }]",
+      "[{ on = \"head_pad\", by = \"rigid\", at = [0, 2, 70], "
+      "force = [\"load / 10\", 0, \"-thrust\"] }]");
+  text = changed(text, "[{ on = \"foot_pad\", fix = \"xyz\" }]",
+                 "[{ on = \"foot_pad\", by = \"rigid\", at = [\"thrust / "
+                 "500\", 0, \"-foot / 2\"], fix = \"xyz\", fix_rotation = "
+                 "\"xz\" },\n"
+                 "  { on = \"head_pad\", by = \"rigid\", at = [0, 2, 70], fix "
+                 "= \"x\" }]");
+  expect_exact(text, VectorX::Zero(2));
+  expect_exact(text, Eigen::Vector2d(0.3, 50.0));
+}
+
+TEST(DesignGradient, OfFactorsOfTheSecondLoadCaseIsExact) {
+  std::string text =
+      changed(eigenvalues(), "[load_cases.service]",
+              "[load_cases.first]\n"
+              "supports = [{ on = \"foot_pad\", fix = \"xyz\" }]\n"
+              "loads = [{ on = \"head_pad\", force = [0, \"thrust\", 0] }]\n\n"
+              "[load_cases.service]");
+  text = changed(text, "kind = \"buckling_factor\"\n\n",
+                 "kind = \"buckling_factor\"\nload_case = \"service\"\n\n");
+  expect_exact(text, VectorX::Zero(2));
+}
+
 // One for the stress's dependence on displacements, whatever the cluster.
 TEST(DesignGradient, OfABucklingFactorCostsOneSolve) {
   EXPECT_EQ(differentiated({"stable"}).by.solves, 1);

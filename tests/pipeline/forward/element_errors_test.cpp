@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "pipeline/forward/responses.h"
+#include "pipeline/responses/responses.h"
 #include "tests/support/mapped_shapes.h"
 #include "tests/support/parts.h"
 
@@ -75,9 +75,9 @@ Part part(int n) {
 }
 
 VectorX values(const Part& p) {
-  return forward::respond(p.input,
-                          {p.fields.inputs, p.fields.mesh, p.fields.solution,
-                           p.fields.exclusion.what});
+  return responses::respond(p.input,
+                            {p.fields.inputs, p.fields.mesh, p.fields.solution,
+                             p.fields.exclusion.what});
 }
 
 TEST(ElementErrors, DoNotDependOnTheSizeOfTheLoad) {

@@ -11,8 +11,8 @@
 #include "pipeline/forward/forward_model.h"
 #include "pipeline/forward/gradient_check.h"
 #include "pipeline/forward/part_warnings.h"
-#include "pipeline/forward/responses.h"
 #include "pipeline/forward/walls.h"
+#include "pipeline/responses/responses.h"
 #include "tests/support/case_text.h"
 
 namespace meniscus::wall_run_test {

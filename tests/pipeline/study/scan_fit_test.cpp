@@ -259,7 +259,7 @@ TEST(ScanFit, ChangesTheCasesHashWithTheScan) {
   EXPECT_NE(first.hash, second.hash);
   ASSERT_EQ(first.files.size(), 1U);
   EXPECT_LT(first.files[0].text.size(), 100U);
-  EXPECT_THROW(forward::read_scans(first), InvalidInput);
+  EXPECT_THROW(responses::read_scans(first), InvalidInput);
 }
 
 TEST(ScanCurves, AreTheRimsThatTheFilmHangsOnAndMakeACase) {

@@ -71,7 +71,7 @@ class PictureTest : public ::testing::Test {
     job.height = 300;
     job.supports = {"z0"};
     job.solids = {"z0", "z1"};
-    job.loads = {{"z1", Vec3(100, 0, 0), "100 N"}};
+    job.loads = {{{"z1"}, Vec3(100, 0, 0), "100 N"}};
     return job;
   }
 
@@ -319,7 +319,11 @@ TEST(PictureJobs, SurviveTheirBytes) {
   picture::PictureJob job;
   job.kind = picture::PictureKind::Film;
   job.output = "größe \"x\" \xff.png";  // a path need not be UTF-8
-  job.loads = {{"pad", Vec3(0.1, -2, 3), "5 N"}};
+  job.loads = {{{"pad"}, Vec3(0.1, -2, 3), "5 N"},
+               {.surfaces = {"lug_1", "lug_2"},
+                .direction = Vec3(0, 0, 1),
+                .label = "7 N",
+                .point = Vec3(4, 0.3, -1)}};
   job.view = Vec3(1, 2, 3);
   job.facet_edges = true;
   job.hidden = {"lid_*"};
@@ -334,6 +338,9 @@ TEST(PictureJobs, SurviveTheirBytes) {
   EXPECT_EQ(jobs[0].kind, job.kind);
   EXPECT_EQ(jobs[0].output, job.output);
   EXPECT_EQ(jobs[0].loads.at(0).direction, job.loads[0].direction);
+  EXPECT_FALSE(jobs[0].loads[0].point.has_value());
+  EXPECT_EQ(jobs[0].loads.at(1).surfaces, job.loads[1].surfaces);
+  EXPECT_EQ(jobs[0].loads[1].point, job.loads[1].point);
   EXPECT_EQ(jobs[0].view, job.view);
   EXPECT_TRUE(jobs[0].facet_edges);
   EXPECT_EQ(jobs[0].hidden, job.hidden);

@@ -70,6 +70,31 @@ TEST(SurfacePatch, ABoreIsActedOnAtItsMouth) {
   EXPECT_NEAR(anchor.at.x(), 0.0, 1e-9);
 }
 
+TEST(SurfacePatch, ArrowsOffTheSurfaceLieOutsideThePart) {
+  const SurfaceMesh box = shapes::box(Vec3(10, 10, 10), 4);  // from the origin
+  const Vec3 beside(12.5, 4.1, 5.3);
+  const render::ArrowPlace away = render::place_free_arrow(
+      box, beside, Vec3::UnitX(), Vec3::UnitZ(), 4.0, 0.1);
+  EXPECT_EQ(away.tail, beside);
+  EXPECT_LT((away.tip - Vec3(16.5, 4.1, 5.3)).norm(), 1e-12);
+  // The part is ahead: the arrow ends there.
+  const render::ArrowPlace towards = render::place_free_arrow(
+      box, beside, -Vec3::UnitX(), Vec3::UnitZ(), 4.0, 0.1);
+  EXPECT_EQ(towards.tip, beside);
+  EXPECT_LT((towards.tail - Vec3(16.5, 4.1, 5.3)).norm(), 1e-12);
+  // Within the part: beyond it.
+  const render::ArrowPlace within = render::place_free_arrow(
+      box, Vec3(5.2, 4.1, 5.3), Vec3::UnitX(), Vec3::UnitZ(), 4.0, 0.1);
+  EXPECT_GT(within.tail.x(), 10.0);
+  EXPECT_GT(within.tip.x(), within.tail.x());
+  // The part hides it: as far along as the eye needs.
+  const render::ArrowPlace hidden = render::place_free_arrow(
+      box, beside, Vec3::UnitZ(), -Vec3::UnitX(), 4.0, 0.1);
+  EXPECT_GT(hidden.tail.z(), 10.0);
+  EXPECT_LT(hidden.tail.z(), 12.0);
+  EXPECT_EQ(hidden.tail.x(), 12.5);
+}
+
 TEST(SurfacePatch, FacetsAreSpreadEvenly) {
   const SurfaceMesh box = shapes::box(Vec3(10, 10, 10), 12);
   const render::SurfacePatch patch = render::surface_patch(box, "z1");

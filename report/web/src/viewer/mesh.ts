@@ -160,13 +160,13 @@ export function rimEdges(surface: Surface): Uint32Array {
 /** Mean of a surface's nodes, or null when it has none. */
 export function centreOf(
   surface: Surface,
-  name: string,
+  names: string[],
 ): [number, number, number] | null {
-  const label = surface.names.indexOf(name);
+  const wanted = new Set(names.map((name) => surface.names.indexOf(name)));
   const sum = [0, 0, 0];
   let n = 0;
   for (let i = 0; i < surface.triangles.length; ++i) {
-    if (surface.labels[Math.floor(i / 3)] === label) {
+    if (wanted.has(surface.labels[Math.floor(i / 3)])) {
       const id = surface.triangles[i];
       for (let c = 0; c < 3; ++c) {
         sum[c] += surface.nodes[3 * id + c];

@@ -142,7 +142,16 @@ export class Model {
       if (!centre) {
         return;
       }
-      const at = new THREE.Vector3(...centre);
+      // What several surfaces carry together acts at its point.
+      const shared = item.on.length > 1;
+      const at = new THREE.Vector3(...((shared && item.at) || centre));
+      if (shared) {
+        const lines = item.on.flatMap((name) => {
+          const carrier = centreOf(surface, [name]);
+          return carrier ? [...at.toArray(), ...carrier] : [];
+        });
+        this.loads.add(curvePieces(new Float32Array(lines), FORCE));
+      }
       const text =
         item.kind === "force"
           ? quantity(sizes[k], loadCase.unit)

@@ -10,7 +10,7 @@
 #include "evolve/scan/scan.h"
 #include "pipeline/case_data/case.h"
 
-namespace meniscus::forward {
+namespace meniscus::responses {
 
 /// By the path that responses name.
 using Scans = std::map<std::string, std::shared_ptr<const scan::Scan>>;
@@ -28,4 +28,4 @@ scan::ScanDistances scan_distances(const case_data::ResponseEntry& response,
                                    const frozen::FilmModel& film,
                                    const Points& points);
 
-}  // namespace meniscus::forward
+}  // namespace meniscus::responses

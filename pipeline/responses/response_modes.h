@@ -11,7 +11,7 @@
 #include "fea/elastic/elasticity.h"
 #include "pipeline/case_data/case.h"
 
-namespace meniscus::forward {
+namespace meniscus::responses {
 
 /// The lowest modes of one eigenproblem, that of a kind of response and a load
 /// case.
@@ -61,4 +61,4 @@ const ModalSum& modal_sum(const ResponseModes& modes,
 /// The load case of that index, or one that holds nothing.
 loads::LoadCase held_as(const case_data::EvaluatedCase& inputs, int load_case);
 
-}  // namespace meniscus::forward
+}  // namespace meniscus::responses

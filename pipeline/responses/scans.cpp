@@ -1,4 +1,4 @@
-#include "pipeline/forward/scans.h"
+#include "pipeline/responses/scans.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 #include "pipeline/files/content_hash.h"
 #include "pipeline/files/part_file.h"
 
-namespace meniscus::forward {
+namespace meniscus::responses {
 
 namespace {
 
@@ -70,4 +70,4 @@ scan::ScanDistances scan_distances(const case_data::ResponseEntry& response,
                             labels_of(film, response.films));
 }
 
-}  // namespace meniscus::forward
+}  // namespace meniscus::responses

@@ -3,16 +3,21 @@
 
 #include "fea/functionals/nodal_peak.h"
 #include "fea/functionals/stress_criteria.h"
-#include "pipeline/forward/response_partials.h"
+#include "pipeline/responses/response_partials.h"
 
-namespace meniscus::forward {
+namespace meniscus::responses {
 
 namespace {
 
 /// Of the load cases, in the states' order.
 ResponsePartials peak_partials(functionals::NodalPeak peak,
-                               const std::vector<int>& load_cases) {
+                               const std::vector<int>& load_cases,
+                               const ResponseTask& task) {
   ResponsePartials result;
+  if (task.response.worst_in) {
+    result.worst_direction = functionals::worst_stress_direction(
+        peak.largest, *task.response.worst_in);
+  }
   result.value = peak.value;
   result.by_nodes = std::move(peak.by_nodes);
   result.by_modulus = std::move(peak.by_modulus);
@@ -26,9 +31,11 @@ ResponsePartials peak_partials(functionals::NodalPeak peak,
   return result;
 }
 
-ResponsePartials nodal_peak(const ResponseTask& task,
-                            const std::vector<int>& load_cases,
-                            const functionals::NodeCriterion& criterion) {
+}  // namespace
+
+ResponsePartials nodal_peak_partials(
+    const ResponseTask& task, const std::vector<int>& load_cases,
+    const functionals::NodeCriterion& criterion) {
   const ResponseContext& fields = task.fields;
   std::vector<functionals::StressState> states;
   states.reserve(load_cases.size());
@@ -41,12 +48,10 @@ ResponsePartials nodal_peak(const ResponseTask& task,
           {fields.mesh, task.fields.inputs.materials, std::move(states),
            fields.excluded, task.response.excess, task.derivatives},
           criterion),
-      load_cases);
+      load_cases, task);
 }
 
-}  // namespace
-
-ResponsePartials stress_ratio(const ResponseTask& task) {
+std::vector<double> allowable_stress(const ResponseTask& task) {
   std::vector<double> allowable;
   allowable.reserve(task.fields.inputs.materials.size());
   for (const element::Material& material : task.fields.inputs.materials) {
@@ -54,10 +59,15 @@ ResponsePartials stress_ratio(const ResponseTask& task) {
                             ? *task.response.allowable
                             : material.yield_strength.value());
   }
-  return nodal_peak(task, {task.response.load_case},
-                    task.response.stress == case_data::StressMeasure::VonMises
-                        ? functionals::von_mises_ratio(std::move(allowable))
-                        : functionals::tension_ratio(std::move(allowable)));
+  return allowable;
+}
+
+ResponsePartials stress_ratio(const ResponseTask& task) {
+  return nodal_peak_partials(
+      task, {task.response.load_case},
+      task.response.stress == case_data::StressMeasure::VonMises
+          ? functionals::von_mises_ratio(allowable_stress(task))
+          : functionals::tension_ratio(allowable_stress(task)));
 }
 
 ResponsePartials fatigue(const ResponseTask& task) {
@@ -68,11 +78,11 @@ ResponsePartials fatigue(const ResponseTask& task) {
                          .tensile = material.tensile_strength.value_or(0.0),
                          .torsion = material.torsion_limit.value_or(0.0)});
   }
-  return nodal_peak(
+  return nodal_peak_partials(
       task, task.response.load_cases,
       task.response.criterion == case_data::FatigueCriterion::Goodman
           ? functionals::goodman_ratio(std::move(endurance))
           : functionals::crossland_ratio(std::move(endurance)));
 }
 
-}  // namespace meniscus::forward
+}  // namespace meniscus::responses

@@ -1,6 +1,7 @@
 /// Responses: numbers that a case asks of an evaluated design.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,10 +10,10 @@
 #include "fea/functionals/thickness.h"
 #include "fea/stress/exclusion_zones.h"
 #include "pipeline/case_data/case.h"
-#include "pipeline/forward/response_modes.h"
-#include "pipeline/forward/scans.h"
+#include "pipeline/responses/response_modes.h"
+#include "pipeline/responses/scans.h"
 
-namespace meniscus::forward {
+namespace meniscus::responses {
 
 /// What a design came to, on loan to the responses.
 struct ResponseContext {
@@ -37,6 +38,9 @@ struct CasePartials {
   /// Where by_displacement is K u times a number, that number: the adjoint is
   /// then so many displacements.
   double self_adjoint = 0.0;
+  /// Of any but a response's first: by_displacement is so many times that of
+  /// the first, whose supports are the same, and so is the adjoint.
+  std::optional<double> of_first = {};
   VectorX by_forces;       // 3 per node [value/force]
   VectorX by_temperature;  // per node [value/temperature]
 };
@@ -47,8 +51,11 @@ struct ResponsePartials {
   double value = 0.0;
   Points by_nodes;                  // of the mesh [value/length]
   std::vector<CasePartials> cases;  // that it depends on the displacement of
+  /// Of a load from any direction: the worst, where it acts most.
+  std::optional<Vec3> worst_direction;
   Vec3 by_direction = Vec3::Zero();
   Vec3 by_point = Vec3::Zero();
+  Points by_pin_point;             // of the response's load case: of its modes
   std::vector<double> by_density;  // per region
   std::vector<double> by_modulus;  // Young's, per region; displacement held
   frozen::FilmCovector film;
@@ -86,4 +93,4 @@ double place_rate(const case_data::ResponseEntry& response,
                   const case_data::ResponseInputs& rates,
                   const ResponseContext& fields);
 
-}  // namespace meniscus::forward
+}  // namespace meniscus::responses

@@ -1,4 +1,4 @@
-#include "pipeline/forward/responses.h"
+#include "pipeline/responses/responses.h"
 
 #include <algorithm>
 
@@ -9,9 +9,10 @@
 #include "pipeline/case_data/composed_responses.h"
 #include "pipeline/case_data/response_entries.h"
 #include "pipeline/case_data/response_kinds.h"
-#include "pipeline/forward/response_partials.h"
+#include "pipeline/responses/response_partials.h"
+#include "pipeline/responses/worst_loads.h"
 
-namespace meniscus::forward {
+namespace meniscus::responses {
 
 functionals::ThicknessPairs thickness_pairs_of(const case_data::Case& input,
                                                const TetMesh& base) {
@@ -40,11 +41,16 @@ double place_rate(const case_data::ResponseEntry& response,
                   const case_data::ResponseInputs& rates,
                   const ResponseContext& fields) {
   if (rates.weight) {
+    VectorX u = fields.solution.displacements[response.load_case];
+    if (response.worst_in) {
+      const Vec3 d =
+          *partials_of(response, inputs, fields, element::Derivatives::None)
+               .worst_direction;
+      u = combined(fields.solution.displacements, response.load_case, d);
+    }
     return functionals::weighted_displacement_functional(
                fields.mesh, response.surface, inputs.direction,
-               {rates.weight, {}},
-               fields.solution.displacements[response.load_case],
-               element::Derivatives::None)
+               {rates.weight, {}}, u, element::Derivatives::None)
         .value;
   }
   return rates.level ? functionals::intrusion_rate(
@@ -85,4 +91,4 @@ VectorX respond(const case_data::Case& input, const ResponseContext& fields) {
   return values;
 }
 
-}  // namespace meniscus::forward
+}  // namespace meniscus::responses

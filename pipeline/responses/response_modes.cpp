@@ -1,4 +1,4 @@
-#include "pipeline/forward/response_modes.h"
+#include "pipeline/responses/response_modes.h"
 
 #include <algorithm>
 
@@ -9,7 +9,7 @@
 #include "fea/modes/mode_shapes.h"
 #include "fea/modes/modes.h"
 
-namespace meniscus::forward {
+namespace meniscus::responses {
 
 namespace {
 
@@ -291,4 +291,4 @@ loads::LoadCase held_as(const case_data::EvaluatedCase& inputs, int load_case) {
              : inputs.load_cases[static_cast<std::size_t>(load_case)];
 }
 
-}  // namespace meniscus::forward
+}  // namespace meniscus::responses

@@ -1,10 +1,13 @@
 /// How each kind of response is computed, with its partial derivatives.
 #pragma once
 
-#include "pipeline/case_data/response_kinds.h"
-#include "pipeline/forward/responses.h"
+#include <vector>
 
-namespace meniscus::forward {
+#include "fea/functionals/nodal_peak.h"
+#include "pipeline/case_data/response_kinds.h"
+#include "pipeline/responses/responses.h"
+
+namespace meniscus::responses {
 
 /// One response of one design, on loan.
 struct ResponseTask {
@@ -20,6 +23,22 @@ ResponsePartials compute_partials(const ResponseTask& task);
 // Of kinds stress_ratio and fatigue, in strength_partials.cpp:
 ResponsePartials stress_ratio(const ResponseTask& task);
 ResponsePartials fatigue(const ResponseTask& task);
+
+/// Of a load case, 3 per node: its loads' work and strain energy.
+ResponsePartials energy_of(const ResponseTask& task,
+                           const loads::LoadCase& load_case, const VectorX& u);
+
+/// Of the worst direction of a load from any, in worst_partials.cpp: all that
+/// case_data::knows_worst_direction() says.
+ResponsePartials worst_partials(const ResponseTask& task);
+
+/// Nodal peak of states of load cases, in their order.
+ResponsePartials nodal_peak_partials(
+    const ResponseTask& task, const std::vector<int>& load_cases,
+    const functionals::NodeCriterion& criterion);
+
+/// Per region, of kind stress_ratio [pressure].
+std::vector<double> allowable_stress(const ResponseTask& task);
 
 /// Of gaps, x the edge, where the case says nothing else: films run beside each
 /// other over wide areas, and many edges count.
@@ -38,4 +57,4 @@ double ks_scale(const case_data::ResponseEntry& response,
 double sharpness_of(const case_data::ResponseEntry& response,
                     const ResponseContext& fields);
 
-}  // namespace meniscus::forward
+}  // namespace meniscus::responses

@@ -1,5 +1,5 @@
 /// Which modes responses take, in designs near the base and where modes cross.
-#include "pipeline/forward/response_modes.h"
+#include "pipeline/responses/response_modes.h"
 
 #include <cmath>
 
@@ -42,9 +42,9 @@ class Bar {
     modes_ = find(base_, nullptr);
   }
 
-  const forward::ResponseModes& base() const { return modes_; }
+  const responses::ResponseModes& base() const { return modes_; }
 
-  forward::ResponseModes at(double y, double z) const {
+  responses::ResponseModes at(double y, double z) const {
     State state = base_;
     for (Vec3& x : state.mesh.nodes) {
       x.y() *= y;
@@ -61,20 +61,20 @@ class Bar {
     equations::ElasticSolution solution;
   };
 
-  forward::ResponseModes find(const State& state,
-                              const forward::ResponseModes* base) const {
-    return forward::find_response_modes({.input = input_,
-                                         .inputs = state.inputs,
-                                         .mesh = state.mesh,
-                                         .solution = state.solution,
-                                         .model = *model_,
-                                         .base = base});
+  responses::ResponseModes find(const State& state,
+                                const responses::ResponseModes* base) const {
+    return responses::find_response_modes({.input = input_,
+                                           .inputs = state.inputs,
+                                           .mesh = state.mesh,
+                                           .solution = state.solution,
+                                           .model = *model_,
+                                           .base = base});
   }
 
   case_data::Case input_;
   State base_;
   std::optional<elastic::ElasticModel> model_;
-  forward::ResponseModes modes_;
+  responses::ResponseModes modes_;
 };
 
 TEST(ResponseModes, AreThoseOfABeam) {
@@ -91,12 +91,12 @@ TEST(ResponseModes, AreFollowedThroughACrossing) {
   case_data::ResponseEntry second = factor(2, 0.0);
   second.name = "second";
   const Bar bar({factor(1, 0.0), second}, 1.0);
-  const forward::ResponseModes& base = bar.base();
+  const responses::ResponseModes& base = bar.base();
   ASSERT_FALSE(base.failure) << base.failure->message;
   const double weak = modal_sum(base, "factor").value;
   const double strong = modal_sum(base, "second").value;
   EXPECT_LT(weak, strong);
-  const forward::ResponseModes there = bar.at(0.7, 1.4);
+  const responses::ResponseModes there = bar.at(0.7, 1.4);
   ASSERT_FALSE(there.failure) << there.failure->message;
   // Bending of the weak side goes with y z^3, of the strong with z y^3.
   EXPECT_NEAR(modal_sum(there, "factor").value / weak, 0.7 * std::pow(1.4, 3),
@@ -113,7 +113,7 @@ TEST(ResponseModes, OfAClusterAreSmoothThroughACrossing) {
   std::vector<double> least;
   for (int k = -2; k <= 2; ++k) {
     const double y = std::sqrt(0.8) * (1.0 + 1e-3 * k);
-    const forward::ResponseModes there = bar.at(y, 0.8 / (y * 0.8));
+    const responses::ResponseModes there = bar.at(y, 0.8 / (y * 0.8));
     ASSERT_FALSE(there.failure);
     value.push_back(there.sums[0].value);
     least.push_back(there.problems[0].values[0]);

@@ -1,4 +1,4 @@
-#include "pipeline/forward/response_partials.h"
+#include "pipeline/responses/response_partials.h"
 
 #include <algorithm>
 #include <limits>
@@ -18,7 +18,7 @@
 #include "fea/modes/eigenvalue_functionals.h"
 #include "fea/stress/peak_stress.h"
 
-namespace meniscus::forward {
+namespace meniscus::responses {
 
 namespace {
 
@@ -56,11 +56,13 @@ ResponsePartials to_partials(functionals::MassFunctional functional) {
   return result;
 }
 
-ResponsePartials to_partials(modes::ModeFunctional functional) {
+ResponsePartials to_partials(modes::ModeFunctional functional, int load_case) {
   std::vector<double> by_density = std::move(functional.by_density);
+  Points by_pin_point = std::move(functional.by_pin_point);
   ResponsePartials result =
-      to_partials(static_cast<element::Functional&&>(functional));
+      to_partials(static_cast<element::Functional&&>(functional), load_case);
   result.by_density = std::move(by_density);
+  result.by_pin_point = std::move(by_pin_point);
   return result;
 }
 
@@ -112,13 +114,18 @@ ResponsePartials rotation(const ResponseTask& task) {
       task.response.load_case);
 }
 
+ResponsePartials energy(const ResponseTask& task) {
+  return energy_of(task, task.fields.inputs.load_cases[task.response.load_case],
+                   displacement(task));
+}
+
+}  // namespace
+
 /// Half the work of the loads is the strain energy where it all goes into the
 /// solid and nothing else does work. Enforced displacements make the solution
 /// another than the loads' own: it is not its adjoint then.
-ResponsePartials energy(const ResponseTask& task) {
-  const loads::LoadCase& load_case =
-      task.fields.inputs.load_cases[task.response.load_case];
-  const VectorX& u = displacement(task);
+ResponsePartials energy_of(const ResponseTask& task,
+                           const loads::LoadCase& load_case, const VectorX& u) {
   const bool strain =
       task.response.kind == case_data::ResponseKind::StrainEnergy;
   const bool enforced = loads::enforces(load_case);
@@ -139,11 +146,14 @@ ResponsePartials energy(const ResponseTask& task) {
     by_node *= share;
   }
   if (task.derivatives == element::Derivatives::All) {
+    result.cases.front().by_displacement *= share;
     result.cases.front().self_adjoint = enforced ? 0.0 : share;
     result.cases.front().by_forces = share * u;
   }
   return result;
 }
+
+namespace {
 
 /// A sum over modes that were found with the design.
 ResponsePartials modal(const ResponseTask& task) {
@@ -153,12 +163,15 @@ ResponsePartials modal(const ResponseTask& task) {
     const FoundModes& found = task.fields.modes->problems[sum.problem];
     const modes::WeightedModes modes{found.values, found.shapes, sum.weights};
     const loads::LoadCase held = held_as(task.fields.inputs, found.load_case);
-    result = found.kind == case_data::ResponseKind::BucklingFactor
-                 ? to_partials(modes::factor_functional(
-                       task.fields.mesh, materials(task), held,
-                       displacement(task), modes))
-                 : to_partials(modes::frequency_functional(
-                       task.fields.mesh, materials(task), held, modes));
+    result =
+        found.kind == case_data::ResponseKind::BucklingFactor
+            ? to_partials(
+                  modes::factor_functional(task.fields.mesh, materials(task),
+                                           held, displacement(task), modes),
+                  found.load_case)
+            : to_partials(modes::frequency_functional(
+                              task.fields.mesh, materials(task), held, modes),
+                          found.load_case);
   }
   result.value = sum.value;
   return result;
@@ -363,6 +376,9 @@ ResponsePartials scan_distance(const ResponseTask& task) {
 
 ResponsePartials compute_partials(const ResponseTask& task) {
   using Kind = case_data::ResponseKind;
+  if (task.response.worst_in) {
+    return worst_partials(task);
+  }
   switch (task.response.kind) {
     case Kind::MeanDisplacement:
       return mean_displacement(task);
@@ -445,4 +461,4 @@ double sharpness_of(const case_data::ResponseEntry& response,
          response.smoothing.value_or(kPartOfEdge * fields.inputs.fea_edge);
 }
 
-}  // namespace meniscus::forward
+}  // namespace meniscus::responses
