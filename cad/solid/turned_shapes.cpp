@@ -9,14 +9,32 @@ namespace meniscus::solid {
 
 namespace {
 
-/// The farthest vertex from the cylinder.
-double farthest_off(const FilmMesh& mesh, const CylinderSurface& surface) {
-  double off = 0.0;
+/// Nothing where a vertex is farther off.
+std::optional<SimpleFilm> on_cylinder(const FilmMesh& mesh,
+                                      CylinderSurface surface, double limit,
+                                      double edge) {
+  SimpleFilm film;
   for (const Vec3& p : mesh.points) {
     const double r = surface.axis.cross(p - surface.center).norm();
-    off = std::max(off, std::abs(r - surface.radius));
+    film.off = std::max(film.off, std::abs(r - surface.radius));
   }
-  return off;
+  if (film.off > std::max(limit, sagitta(edge, surface.radius))) {
+    return {};
+  }
+  surface.inward = looks_inward(mesh, surface.center, surface.axis);
+  film.surface = surface;
+  return film;
+}
+
+/// Nothing for what is no circular arc.
+std::optional<RimCircle> circle_of(const EdgeCurve& curve) {
+  const auto* arc = std::get_if<EllipseCurve>(&curve);
+  if (arc == nullptr ||
+      std::abs(arc->u.norm() - arc->v.norm()) > kExactRim * arc->u.norm()) {
+    return {};
+  }
+  return RimCircle{arc->center, arc->u.cross(arc->v).normalized(),
+                   arc->u.normalized(), arc->u.norm()};
 }
 
 /// The arcs of a rim of lines and circular arcs; none where it has others.
@@ -27,13 +45,11 @@ std::vector<RimCircle> arcs_of(const RimCurve& rim) {
     if (std::holds_alternative<StraightLine>(curve)) {
       continue;
     }
-    const auto* arc = std::get_if<EllipseCurve>(&curve);
-    if (arc == nullptr ||
-        std::abs(arc->u.norm() - arc->v.norm()) > kExactRim * arc->u.norm()) {
+    const auto arc = circle_of(curve);
+    if (!arc) {
       return {};
     }
-    arcs.push_back({arc->center, arc->u.cross(arc->v).normalized(),
-                    arc->u.normalized(), arc->u.norm()});
+    arcs.push_back(*arc);
   }
   return arcs;
 }
@@ -46,13 +62,11 @@ std::optional<std::vector<RimCircle>> circles_of(
     const std::vector<FilmRim>& rims) {
   std::vector<RimCircle> circles;
   for (const FilmRim& rim : rims) {
-    const auto* arc = std::get_if<EllipseCurve>(&rim.curve->piece(0).curve);
-    if (rim.curve->piece_count() != 1 || arc == nullptr ||
-        std::abs(arc->u.norm() - arc->v.norm()) > kExactRim * arc->u.norm()) {
+    const auto circle = circle_of(rim.curve->piece(0).curve);
+    if (rim.curve->piece_count() != 1 || !circle) {
       return {};
     }
-    circles.push_back({arc->center, arc->u.cross(arc->v).normalized(),
-                       arc->u.normalized(), arc->u.norm()});
+    circles.push_back(*circle);
   }
   return circles;
 }
@@ -86,17 +100,13 @@ std::optional<SimpleFilm> cylinder_of(const FilmMesh& mesh,
   }
   const RimCircle& low = rims[0];
   const Vec3 way = rims[1].center - low.center;
-  CylinderSurface surface{low.center, way.normalized(), low.zero, low.radius};
-  SimpleFilm film;
-  film.off = farthest_off(mesh, surface);
-  if (film.off > std::max(limit, sagitta(edge, surface.radius))) {
-    return {};
+  auto film = on_cylinder(
+      mesh, {low.center, way.normalized(), low.zero, low.radius}, limit, edge);
+  if (film) {
+    film->high = way.norm();
+    film->low_rim = 0;
+    film->high_rim = 1;
   }
-  surface.inward = looks_inward(mesh, surface.center, surface.axis);
-  film.surface = surface;
-  film.high = way.norm();
-  film.low_rim = 0;
-  film.high_rim = 1;
   return film;
 }
 
@@ -166,15 +176,11 @@ std::optional<SimpleFilm> part_cylinder_of(const FilmMesh& mesh,
   surface.zero =
       (surface.center - point_of(arc.curve, 0.5 * (arc.first + arc.last)))
           .normalized();
-  SimpleFilm film;
-  film.off = farthest_off(mesh, surface);
-  if (film.off > std::max(limit, sagitta(edge, surface.radius))) {
-    return {};
+  auto film = on_cylinder(mesh, surface, limit, edge);
+  if (film) {
+    film->high = way.norm();
+    film->is_part = true;
   }
-  surface.inward = looks_inward(mesh, surface.center, surface.axis);
-  film.surface = surface;
-  film.high = way.norm();
-  film.is_part = true;
   return film;
 }
 

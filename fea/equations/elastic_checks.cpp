@@ -52,15 +52,6 @@ void check_memory(const TetMesh& mesh, SolverKind solver) {
                  "eighth");
 }
 
-void refuse_pins(const loads::LoadCase& load_case) {
-  if (!load_case.pins.empty()) {
-    throw InvalidInput(fmt::format(
-        "load case '{}': natural frequencies of a part that supports leave "
-        "free do not know rigid pins ('{}'); build an ElasticModel of it",
-        load_case.name, load_case.pins.front().surfaces.text()));
-  }
-}
-
 VectorX checked_forces(const TetMesh& mesh, const loads::LoadCase& load_case,
                        const std::vector<element::Material>& materials) {
   VectorX f = loads::nodal_forces(mesh, load_case, materials);

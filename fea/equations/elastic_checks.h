@@ -19,10 +19,6 @@ void check_arrays(const TetMesh& mesh);
 /// other machines' memory.
 void check_memory(const TetMesh& mesh, SolverKind solver);
 
-/// Throws InvalidInput, naming load case and surface, for a load case with
-/// rigid pins: modes of parts that supports leave free do not know them.
-void refuse_pins(const loads::LoadCase& load_case);
-
 /// The load case's nodal forces; throws InvalidInput when there are none and no
 /// displacement is enforced.
 VectorX checked_forces(const TetMesh& mesh, const loads::LoadCase& load_case,

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include <fmt/format.h>
 
@@ -25,17 +24,13 @@ EigenPairs eigenpairs_of(const equations::ElasticOperator& op,
   if (may_factor && small) {
     first.max_iterations = std::min(options.max_iterations, kSlow);
   }
-  std::optional<PinSpace> space;
-  if (!op.pins.empty()) {
-    space.emplace(op);
-  }
-  const PinSpace* pins = space ? &*space : nullptr;
+  const PinSpace space(op);
   EigenPairs pairs = largest_eigenpairs(
-      {pattern, op.K, A, *op.preconditioner, op.freedom, pins}, start, first);
+      {pattern, op.K, A, *op.preconditioner, op.freedom, space}, start, first);
   const bool slow = may_factor && pairs.end == EigenEnd::TooManyIterations;
   if (small && (slow || pairs.end == EigenEnd::NotPositive)) {
     const auto factor = solver::make_direct(pattern, op.K, op.freedom);
-    pairs = largest_eigenpairs({pattern, op.K, A, *factor, op.freedom, pins},
+    pairs = largest_eigenpairs({pattern, op.K, A, *factor, op.freedom, space},
                                slow ? pairs.x : start, options);
   }
   return pairs;

@@ -66,9 +66,7 @@ class EigenSearch {
       : problem_(problem),
         options_(options),
         rows_(3L * problem.pattern.nodes),
-        products_(problem.pattern, problem.pins != nullptr
-                                       ? problem.pins->freedom()
-                                       : problem.freedom) {}
+        products_(problem.pattern, problem.space.freedom()) {}
 
   EigenPairs run(const solver::Columns& start);
 
@@ -117,9 +115,7 @@ Eigen::Index EigenSearch::block_size(Eigen::Index given) const {
   for (const Mat3& P : problem_.freedom.projector) {
     free -= 3.0 - P.trace();
   }
-  if (problem_.pins != nullptr) {
-    free += static_cast<double>(problem_.pins->motions());
-  }
+  free += static_cast<double>(problem_.space.motions());
   Eigen::Index block =
       std::max<Eigen::Index>(options_.count, given) + options_.guards;
   if (block > solver::kMostColumns) {  // whole fours cost no more
@@ -130,42 +126,34 @@ Eigen::Index EigenSearch::block_size(Eigen::Index given) const {
 }
 
 void EigenSearch::project(const solver::ColumnsOut& v) const {
-  if (problem_.pins == nullptr) {
-    solver::project(problem_.freedom, v);
-    return;
-  }
-  solver::project(problem_.pins->freedom(), v);
-  problem_.pins->project(v);
+  solver::project(problem_.space.freedom(), v);
+  problem_.space.project(v);
 }
 
 void EigenSearch::apply_a(const solver::ColumnsIn& x,
                           const solver::ColumnsOut& y) {
   products_.apply(problem_.A, x, y);
-  if (problem_.pins != nullptr) {
-    problem_.pins->project(y);
-  }
+  problem_.space.project(y);
 }
 
 void EigenSearch::apply_both(Eigen::Index first, Eigen::Index count) {
   products_.apply(problem_.K, S_.middleCols(first, count),
                   KS_.middleCols(first, count));
-  if (problem_.pins != nullptr) {
-    problem_.pins->project(KS_.middleCols(first, count));
-  }
+  problem_.space.project(KS_.middleCols(first, count));
   apply_a(S_.middleCols(first, count), AS_.middleCols(first, count));
 }
 
 /// Of rigid pins apart: their motions, and the rest with them at rest.
 void EigenSearch::precondition(const solver::ColumnsIn& r,
                                const solver::ColumnsOut& z) {
-  if (problem_.pins == nullptr) {
+  if (!problem_.space.has_pins()) {
     products_.apply(problem_.preconditioner, r, z);
     return;
   }
   solver::Columns rest = r;
-  problem_.pins->hold(rest);
+  problem_.space.hold(rest);
   products_.apply(problem_.preconditioner, rest, z);
-  problem_.pins->add_motions(r, z);
+  problem_.space.add_motions(r, z);
 }
 
 void EigenSearch::begin(const solver::Columns& start) {

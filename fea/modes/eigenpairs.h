@@ -17,7 +17,7 @@ struct EigenProblem {
   const solver::NodalMatrix& A;
   const solver::Preconditioner& preconditioner;
   const solver::NodeFreedom& freedom;  // that the preconditioner is for
-  const PinSpace* pins = nullptr;      // where there are rigid pins
+  const PinSpace& space;               // that the modes are in
 };
 
 struct EigenOptions {

@@ -21,6 +21,16 @@ constexpr double kPi = 3.14159265358979323846;
 /// there, a slender part's lowest bending some 1e-3.
 constexpr double kRigid = 1e-7;
 
+/// Modes of parts that supports leave free do not know rigid pins.
+void refuse_pins(const loads::LoadCase& load_case) {
+  if (!load_case.pins.empty()) {
+    throw InvalidInput(fmt::format(
+        "load case '{}': natural frequencies of a part that supports leave "
+        "free do not know rigid pins ('{}'); build an ElasticModel of it",
+        load_case.name, load_case.pins.front().surfaces.text()));
+  }
+}
+
 std::vector<double> densities(const TetMesh& mesh,
                               const std::vector<element::Material>& materials) {
   std::vector<double> density;
@@ -113,7 +123,7 @@ NaturalModes natural_modes(const TetMesh& mesh,
                            const loads::LoadCase& held,
                            const ModeOptions& options) {
   const Timer timer;
-  equations::refuse_pins(held);
+  refuse_pins(held);
   const ShiftedSystem system(mesh, materials, held);
   NaturalModes modes = solve(mesh, system.shifted(),
                              {.shift = system.shift(),

@@ -1,5 +1,5 @@
-/// Rigid pins in an eigenvalue problem: among which displacements its modes
-/// are.
+/// Among which displacements the modes of an eigenvalue problem are, rigid pins
+/// or none.
 #pragma once
 
 #include <vector>
@@ -16,6 +16,8 @@ namespace meniscus::modes {
 class PinSpace {
  public:
   explicit PinSpace(const equations::ElasticOperator& op);
+
+  bool has_pins() const { return !pins_.empty(); }
 
   /// Without the pins, whose nodes are free.
   const solver::NodeFreedom& freedom() const { return freedom_; }

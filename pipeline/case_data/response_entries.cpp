@@ -48,26 +48,26 @@ bool is_extreme(const Case& input, int response) {
 }
 
 bool knows_worst_direction(const ResponseEntry& entry) {
-  switch (entry.kind) {
-    case ResponseKind::MeanDisplacement:
-    case ResponseKind::Rotation:
-    case ResponseKind::Compliance:
-    case ResponseKind::StrainEnergy:
-      return true;
-    case ResponseKind::StressRatio:
-      return entry.stress == StressMeasure::VonMises;
-    default:
-      return false;
-  }
+  const WorstKnown worst = row_of(entry.kind).worst;
+  return worst != WorstKnown::No && (worst != WorstKnown::AtNodes ||
+                                     entry.stress == StressMeasure::VonMises);
+}
+
+std::vector<DirectionsEntry>::const_iterator directions_with(
+    const Case& input, std::size_t load_case) {
+  return std::find_if(input.directions.begin(), input.directions.end(),
+                      [&](const DirectionsEntry& load) {
+                        const auto first = static_cast<std::size_t>(load.first);
+                        return load_case >= first && load_case < first + 3;
+                      });
 }
 
 std::size_t shown_load_case(const Case& input, const ResponseEntry& entry) {
   if (!entry.worst_in) {
     return static_cast<std::size_t>(entry.load_case);
   }
-  const auto of = std::find_if(
-      input.directions.begin(), input.directions.end(),
-      [&](const DirectionsEntry& d) { return d.first == entry.load_case; });
+  const auto of =
+      directions_with(input, static_cast<std::size_t>(entry.load_case));
   return input.load_cases.size() +
          static_cast<std::size_t>(of - input.directions.begin());
 }

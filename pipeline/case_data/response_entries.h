@@ -25,6 +25,11 @@ bool is_extreme(const Case& input, int response);
 /// that is linear in the load, or quadratic at each place.
 bool knows_worst_direction(const ResponseEntry& entry);
 
+/// The load from any direction that has the load case as one of its three unit
+/// loads; the end where there is none.
+std::vector<DirectionsEntry>::const_iterator directions_with(
+    const Case& input, std::size_t load_case);
+
 /// Which of the load cases with shown ones behind them (forward::find_stresses)
 /// has the peak of stress that a response is of.
 std::size_t shown_load_case(const Case& input, const ResponseEntry& entry);

@@ -21,6 +21,14 @@ enum class ErrorSource {
   Unknown  // of smooth maxima: recovery and the dual solution miss the most
 };
 
+/// How the worst direction of a load is known without trial.
+enum class WorstKnown {
+  No,
+  BySum,     // the response is linear in the load
+  ByEnergy,  // quadratic
+  AtNodes    // quadratic at each node, of von Mises stress
+};
+
 struct ResponseRow {
   const char* name;
   ResponseKind kind;
@@ -33,6 +41,7 @@ struct ResponseRow {
   /// Of a field near its largest or smallest value: from mesh to mesh it shows
   /// no order, and at a clamped edge or a sharp corner it may have no limit.
   bool is_extreme = false;
+  WorstKnown worst = WorstKnown::No;
 };
 
 /// All of them, in the order of the reference.

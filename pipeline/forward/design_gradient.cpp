@@ -265,7 +265,8 @@ double Adjoint::rate(const Backward& backward,
   return sum +
          responses::place_rate(entry(backward),
                                in_.context.inputs.responses[backward.response],
-                               rates.responses[backward.response], in_.context);
+                               rates.responses[backward.response],
+                               partials.worst_direction, in_.context);
 }
 
 /// `rates`: of the responses that are not made of others; receives those.

@@ -61,6 +61,7 @@ Modes or_failure(const Solve& solve) {
 
 FrequencyFigures frequencies_of(const case_data::AnalysisEntry& analysis,
                                 const EvaluationFields& fields,
+                                const std::vector<loads::LoadCase>& cases,
                                 const elastic::ElasticModel& model,
                                 Monitor* monitor) {
   const modes::ModeOptions options{.count = analysis.frequencies,
@@ -74,7 +75,6 @@ FrequencyFigures frequencies_of(const case_data::AnalysisEntry& analysis,
                                           options);
             })};
   }
-  const std::vector<loads::LoadCase> cases = solved_load_cases(fields);
   return {cases[static_cast<std::size_t>(held)].name,
           or_failure<modes::NaturalModes>([&] {
             return modes::natural_modes(model, fields.mesh, cases, held,
@@ -84,10 +84,10 @@ FrequencyFigures frequencies_of(const case_data::AnalysisEntry& analysis,
 
 /// The factors of a load case, and the stress that each is of.
 modes::BucklingFigures buckling_of(const EvaluationFields& fields,
+                                   const std::vector<loads::LoadCase>& cases,
                                    const elastic::ElasticModel& model,
                                    std::size_t c,
                                    const modes::BucklingOptions& options) {
-  const std::vector<loads::LoadCase> cases = solved_load_cases(fields);
   const VectorX& u = fields.solution.displacements[c];
   modes::BucklingFigures figures{.load_case = cases[c].name,
                                  .modes = or_failure<modes::BucklingModes>([&] {
@@ -119,7 +119,7 @@ EigenFigures eigen_figures(const case_data::Case& input,
     if (is_unit_load(fields, c) && !analysis.buckling) {
       continue;
     }
-    figures.buckling.push_back(buckling_of(fields, model, c, options));
+    figures.buckling.push_back(buckling_of(fields, cases, model, c, options));
   }
   if (left_out(analysis) && !analysis.buckling) {
     figures.remark =
@@ -135,7 +135,8 @@ EigenFigures eigen_figures(const case_data::Case& input,
     }
   }
   if (analysis.frequencies > 0) {
-    figures.frequencies = frequencies_of(analysis, fields, model, monitor);
+    figures.frequencies =
+        frequencies_of(analysis, fields, cases, model, monitor);
   }
   for (modes::BucklingFigures& b : figures.buckling) {
     const bool stable = !b.modes.factors.empty() && !matters(b, 0);

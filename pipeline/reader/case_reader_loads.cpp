@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <numbers>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -319,7 +320,7 @@ case_data::LoadPath load_path(CaseContext& context, const CaseTable& table,
 
 /// What directions a load of given size may come from; all without the keys.
 Cone read_cone(CaseContext& context, const CaseTable& table) {
-  constexpr double kHalfTurn = 180.0 * 0.017453292519943295;
+  constexpr double kHalfTurn = std::numbers::pi;
   Cone cone{.half_angle = kHalfTurn};
   if (table.has("within") != table.has("about")) {
     context.problems.add(

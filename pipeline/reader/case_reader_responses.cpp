@@ -390,9 +390,8 @@ int index_of_load_case(CaseContext& context, const CaseTable& table,
 std::vector<AskedCase> asked_cases(const case_data::Case& result) {
   std::vector<AskedCase> asked;
   for (int k = 0; k < static_cast<int>(result.load_cases.size()); ++k) {
-    const auto from_any = std::find_if(
-        result.directions.begin(), result.directions.end(),
-        [&](const case_data::DirectionsEntry& d) { return d.first == k; });
+    const auto from_any =
+        case_data::directions_with(result, static_cast<std::size_t>(k));
     if (from_any == result.directions.end()) {
       asked.push_back({.name = result.load_cases[k].name, .load_case = k});
     } else {

@@ -39,15 +39,13 @@ ResponsePartials partials_of(const case_data::ResponseEntry& response,
 double place_rate(const case_data::ResponseEntry& response,
                   const case_data::ResponseInputs& inputs,
                   const case_data::ResponseInputs& rates,
+                  const std::optional<Vec3>& worst_direction,
                   const ResponseContext& fields) {
   if (rates.weight) {
-    VectorX u = fields.solution.displacements[response.load_case];
-    if (response.worst_in) {
-      const Vec3 d =
-          *partials_of(response, inputs, fields, element::Derivatives::None)
-               .worst_direction;
-      u = combined(fields.solution.displacements, response.load_case, d);
-    }
+    const std::vector<VectorX>& all = fields.solution.displacements;
+    const VectorX u = worst_direction
+                          ? combined(all, response.load_case, *worst_direction)
+                          : all[response.load_case];
     return functionals::weighted_displacement_functional(
                fields.mesh, response.surface, inputs.direction,
                {rates.weight, {}}, u, element::Derivatives::None)

@@ -86,11 +86,12 @@ ResponsePartials partials_of(const case_data::ResponseEntry& response,
                              element::Derivatives derivatives);
 
 /// What a weight or a region that moves with the design changes the response
-/// by, all else held; `rates`: of `numbers`, by one design variable. Throws as
-/// respond().
+/// by, all else held; `rates`: of `inputs`, by one design variable;
+/// `worst_direction`: of its partials. Throws as respond().
 double place_rate(const case_data::ResponseEntry& response,
                   const case_data::ResponseInputs& inputs,
                   const case_data::ResponseInputs& rates,
+                  const std::optional<Vec3>& worst_direction,
                   const ResponseContext& fields);
 
 }  // namespace meniscus::responses

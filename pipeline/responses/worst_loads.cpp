@@ -1,6 +1,5 @@
 #include "pipeline/responses/worst_loads.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -14,15 +13,11 @@ std::vector<WorstLoad> worst_loads(const case_data::Case& input,
   std::vector<WorstLoad> worst;
   for (std::size_t r = 0; r < input.responses.size(); ++r) {
     const case_data::ResponseEntry& response = input.responses[r];
-    const auto of =
-        std::find_if(input.directions.begin(), input.directions.end(),
-                     [&](const case_data::DirectionsEntry& entry) {
-                       return entry.first == response.load_case;
-                     });
-    if (case_data::is_composed(response) || !response.worst_in ||
-        of == input.directions.end()) {
+    if (case_data::is_composed(response) || !response.worst_in) {
       continue;
     }
+    const auto of = case_data::directions_with(
+        input, static_cast<std::size_t>(response.load_case));
     const ResponsePartials partials =
         partials_of(response, fields.inputs.responses[r], fields,
                     element::Derivatives::None);

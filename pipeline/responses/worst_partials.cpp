@@ -106,20 +106,21 @@ ResponsePartials worst_energy(const ResponseTask& task) {
 }  // namespace
 
 ResponsePartials worst_partials(const ResponseTask& task) {
-  using Kind = case_data::ResponseKind;
+  using case_data::WorstKnown;
   const int first = task.response.load_case;
-  switch (task.response.kind) {
-    case Kind::Compliance:
-    case Kind::StrainEnergy:
+  switch (case_data::row_of(task.response.kind).worst) {
+    case WorstKnown::ByEnergy:
       return worst_energy(task);
-    case Kind::StressRatio:
+    case WorstKnown::AtNodes:
       return nodal_peak_partials(
           task, {first, first + 1, first + 2},
           functionals::worst_von_mises_ratio(allowable_stress(task),
                                              *task.response.worst_in));
-    default:
-      return worst_linear(task);
+    case WorstKnown::BySum:
+    case WorstKnown::No:  // refused when the case is read
+      break;
   }
+  return worst_linear(task);
 }
 
 }  // namespace meniscus::responses

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "io/vtk_files.h"
+#include "pipeline/case_data/response_entries.h"
 #include "pipeline/forward/stress_figures.h"
 #include "pipeline/frames/film_frames.h"
 #include "report/picture/picture.h"
@@ -200,11 +201,8 @@ std::vector<std::size_t> shown_cases(const case_data::Case& input,
   const bool with_worst = numbers.load_cases.size() > input.load_cases.size();
   std::vector<std::size_t> shown;
   for (std::size_t k = 0; k < numbers.load_cases.size(); ++k) {
-    const auto is_unit_load = [&](const case_data::DirectionsEntry& load) {
-      const auto first = static_cast<std::size_t>(load.first);
-      return with_worst && k >= first && k < first + 3;
-    };
-    if (std::ranges::none_of(input.directions, is_unit_load)) {
+    if (!with_worst ||
+        case_data::directions_with(input, k) == input.directions.end()) {
       shown.push_back(k);
     }
   }

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "pipeline/reader/case_reader.h"
@@ -91,6 +93,23 @@ inline std::string changed(std::string text, const std::string& from,
   const std::size_t at = text.find(from);
   EXPECT_NE(at, std::string::npos) << "the case has no '" << from << "'";
   return at == std::string::npos ? text : text.replace(at, from.size(), to);
+}
+
+/// Whose head stands off by the design variable `lean`, and rises with it.
+inline std::string leaning_strut() {
+  const std::string text = changed(strut(), "[curves.base]",
+                                   "[design.lean]\ninitial = 3.0\n"
+                                   "bounds = [-10.0, 10.0]\n\n"
+                                   "[curves.base]");
+  return changed(text, "center = [0, 0, \"length\"]",
+                 "center = [\"lean\", 0, \"length + lean / 4\"]");
+}
+
+/// The case of a text without problems.
+inline case_data::Case case_of(const std::string& text) {
+  reader::CaseReading reading = reader::read_case_text(text, "case.toml");
+  EXPECT_THAT(reading.problems, testing::IsEmpty());
+  return std::move(*reading.input);
 }
 
 /// The strut's film as a wall, without body, loads and study.

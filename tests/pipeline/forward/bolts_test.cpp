@@ -12,13 +12,6 @@ namespace {
 
 using testing::Contains;
 using testing::HasSubstr;
-using testing::IsEmpty;
-
-case_data::Case read(const std::string& text) {
-  reader::CaseReading reading = reader::read_case_text(text, "case.toml");
-  EXPECT_THAT(reading.problems, IsEmpty());
-  return std::move(*reading.input);
-}
 
 /// A bar of 40 x 10 x 10 without contraction, tightened from end to end.
 const char* const kBar = R"toml(title = "Bar"
@@ -74,7 +67,7 @@ kind = "analyse"
 )toml";
 
 TEST(Bolts, ABarBetweenHeadAndThreadShortensByItsTension) {
-  const case_data::Case input = read(kBar);
+  const case_data::Case input = case_of(kBar);
   const forward::ForwardModel model(input);
   ASSERT_FALSE(model.failure()) << model.failure()->message;
   forward::EvaluationFields fields;
@@ -97,20 +90,14 @@ TEST(Bolts, ABarBetweenHeadAndThreadShortensByItsTension) {
 
 /// A strut that leans, tightened along its axis by a bolt beside it.
 std::string leaning(const std::string& bolt) {
-  std::string text = changed(strut(), "[curves.base]",
-                             "[design.lean]\ninitial = 3.0\n"
-                             "bounds = [-10.0, 10.0]\n\n"
-                             "[curves.base]");
-  text = changed(text, "center = [0, 0, \"length\"]",
-                 "center = [\"lean\", 0, \"length + lean / 4\"]");
-  return changed(text, "[load_cases.service]",
+  return changed(leaning_strut(), "[load_cases.service]",
                  "[bolts.tie]\n" + bolt + "\n[load_cases.service]");
 }
 
 TEST(Bolts, BalanceInForceAndMomentWhereverTheyAre) {
-  const case_data::Case input =
-      read(leaning("preload = 900\nseat = \"head_pad\"\nthread = \"foot_pad\"\n"
-                   "axis = [\"lean / 9\", 0.2, 1]\nat = [3, \"lean\", 20]\n"));
+  const case_data::Case input = case_of(
+      leaning("preload = 900\nseat = \"head_pad\"\nthread = \"foot_pad\"\n"
+              "axis = [\"lean / 9\", 0.2, 1]\nat = [3, \"lean\", 20]\n"));
   const forward::ForwardModel model(input);
   ASSERT_FALSE(model.failure());
   forward::EvaluationFields fields;
@@ -138,9 +125,9 @@ TEST(Bolts, BalanceInForceAndMomentWhereverTheyAre) {
 
 TEST(Bolts, HaveExactGradients) {
   const case_data::Case input =
-      read(leaning("preload = \"900 + 20 * lean\"\nseat = \"head_pad\"\n"
-                   "thread = \"foot_pad\"\naxis = [\"lean / 9\", 0.2, 1]\n"
-                   "at = [3, \"lean\", \"foot\"]\n"));
+      case_of(leaning("preload = \"900 + 20 * lean\"\nseat = \"head_pad\"\n"
+                      "thread = \"foot_pad\"\naxis = [\"lean / 9\", 0.2, 1]\n"
+                      "at = [3, \"lean\", \"foot\"]\n"));
   const forward::CaseGradientCheck check = forward::check_case_gradient(
       input, case_data::initial_design(input) + Eigen::Vector2d(0.8, -2.0));
   EXPECT_TRUE(check.report.passed)

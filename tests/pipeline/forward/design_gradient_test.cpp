@@ -14,23 +14,13 @@
 namespace meniscus::design_gradient_test {
 namespace {
 
-case_data::Case read(const std::string& text) {
-  reader::CaseReading reading = reader::read_case_text(text, "case.toml");
-  EXPECT_THAT(reading.problems, testing::IsEmpty());
-  return std::move(*reading.input);
-}
-
 /// A strut whose curves, volume and load follow three design variables, with
 /// every kind of response that has derivatives.
 std::string every_response() {
-  std::string text = changed(strut(), "[curves.base]",
-                             "[design.lean]\ninitial = 3.0\n"
-                             "bounds = [-10.0, 10.0]\n\n"
+  std::string text = changed(leaning_strut(), "[curves.base]",
                              "[design.fill]\ninitial = 1.0\n"
                              "bounds = [0.8, 1.3]\n\n"
                              "[curves.base]");
-  text = changed(text, "center = [0, 0, \"length\"]",
-                 "center = [\"lean\", 0, \"length + lean / 4\"]");
   text = changed(text, "normal = [0, 0, 1]", "normal = [\"lean / 50\", 0, 1]");
   text = changed(text, "volume = 9e4", "volume = \"9e4 * fill\"");
   text = changed(text, "density = 2.8e-9",
@@ -159,7 +149,7 @@ struct Differentiated {
 };
 
 Differentiated differentiated(const std::vector<std::string>& responses) {
-  const case_data::Case input = read(eigenvalues());
+  const case_data::Case input = case_of(eigenvalues());
   const forward::ForwardModel model(input);
   EXPECT_FALSE(model.failure());
   forward::EvaluationFields fields;
@@ -176,7 +166,7 @@ Differentiated differentiated(const std::vector<std::string>& responses) {
 }
 
 void expect_exact(const std::string& text, const VectorX& move) {
-  const case_data::Case input = read(text);
+  const case_data::Case input = case_of(text);
   const VectorX design = case_data::initial_design(input) + move;
   const forward::CaseGradientCheck check =
       forward::check_case_gradient(input, design);
@@ -343,7 +333,7 @@ TEST(DesignGradient, IsExactWhereWeightsAndRegionsFollowTheDesign) {
 }
 
 TEST(DesignGradient, HasTheSameBitsInAnotherOrderOfDesigns) {
-  const case_data::Case input = read(every_response());
+  const case_data::Case input = case_of(every_response());
   const forward::ForwardModel model(input);
   ASSERT_FALSE(model.failure()) << model.failure()->message;
   const VectorX a = case_data::initial_design(input);
@@ -379,7 +369,7 @@ ExpressionCost expression_cost(int variables) {
                  "value = \"1e6 * mass + sqr(sway) / (1 + r0 / 100)\"\n\n"
                  "[responses.dear]\nkind = \"expression\"\n"
                  "value = \"price * mass\"\n\n[study]");
-  const case_data::Case input = read(text);
+  const case_data::Case input = case_of(text);
   const forward::ForwardModel model(input);
   forward::EvaluationFields fields;
   forward::AdjointState adjoint;
@@ -417,9 +407,9 @@ TEST(DesignGradient, OfExpressionsCostsTheSameForOneAnd200Variables) {
 
 TEST(DesignGradient, PeaksAreLeftOutByName) {
   const case_data::Case input =
-      read(changed(strut(), "[responses.mass]",
-                   "[responses.peak]\nkind = "
-                   "\"max_von_mises\"\n\n[responses.mass]"));
+      case_of(changed(strut(), "[responses.mass]",
+                      "[responses.peak]\nkind = "
+                      "\"max_von_mises\"\n\n[responses.mass]"));
   const forward::CaseGradientCheck check =
       forward::check_case_gradient(input, case_data::initial_design(input));
   EXPECT_TRUE(check.report.passed);

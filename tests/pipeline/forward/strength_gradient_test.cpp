@@ -19,20 +19,9 @@ using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-case_data::Case read(const std::string& text) {
-  reader::CaseReading reading = reader::read_case_text(text, "case.toml");
-  EXPECT_THAT(reading.problems, testing::IsEmpty());
-  return std::move(*reading.input);
-}
-
 /// Two load cases, held alike, and a third that is not.
 std::string strong_strut() {
-  std::string text = changed(strut(), "[curves.base]",
-                             "[design.lean]\ninitial = 3.0\n"
-                             "bounds = [-10.0, 10.0]\n\n"
-                             "[curves.base]");
-  text = changed(text, "center = [0, 0, \"length\"]",
-                 "center = [\"lean\", 0, \"length + lean / 4\"]");
+  std::string text = leaning_strut();
   text = changed(text, "density = 2.8e-9",
                  "density = 2.8e-9\nyield_strength = 20\n"
                  "endurance_limit = 12\ntensile_strength = 40\n"
@@ -110,7 +99,7 @@ width = "30 deg"
 }
 
 TEST(StrengthGradient, IsExactThroughTheModel) {
-  const case_data::Case input = read(strong_strut());
+  const case_data::Case input = case_of(strong_strut());
   for (const Eigen::Vector2d& move :
        {Eigen::Vector2d(0.0, 0.0), Eigen::Vector2d(0.8, -2.0)}) {
     const forward::CaseGradientCheck check = forward::check_case_gradient(
@@ -122,7 +111,7 @@ TEST(StrengthGradient, IsExactThroughTheModel) {
 }
 
 TEST(StrengthResponses, PartsOfEnvelopesStandBeforeThem) {
-  EXPECT_THAT(case_data::response_names(read(strong_strut())),
+  EXPECT_THAT(case_data::response_names(case_of(strong_strut())),
               ElementsAre("sway", "mass", "stress[service]", "stress[back]",
                           "stress[warm]", "stress", "pull", "life", "crack",
                           "sway[back]", "sway[warm]", "swing", "least_swing",
@@ -130,7 +119,7 @@ TEST(StrengthResponses, PartsOfEnvelopesStandBeforeThem) {
 }
 
 TEST(StrengthResponses, BoundPeaksFromAbove) {
-  const case_data::Case input = read(strong_strut());
+  const case_data::Case input = case_of(strong_strut());
   const forward::ForwardModel model(input);
   forward::EvaluationFields fields;
   const forward::Evaluation there =

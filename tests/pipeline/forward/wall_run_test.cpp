@@ -21,12 +21,6 @@ namespace {
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-case_data::Case read(const std::string& text) {
-  reader::CaseReading reading = reader::read_case_text(text, "case.toml");
-  EXPECT_THAT(reading.problems, IsEmpty());
-  return std::move(*reading.input);
-}
-
 /// A cylinder by the volume of a void, 30 around, with a wall; ends slide.
 std::string cylinder() {
   return R"toml(title = "A pipe"
@@ -121,7 +115,7 @@ std::string fixed_springs(std::string text) {
 // Lame's cylinder in plane strain, of radius 27 to 33.
 TEST(WallRuns, OfAPipeAreLames) {
   constexpr double kMesh = 0.01;  // facets of 9 degrees, one element thick
-  const case_data::Case input = read(fixed_springs(cylinder()));
+  const case_data::Case input = case_of(fixed_springs(cylinder()));
   const forward::ForwardModel model(input);
   ASSERT_FALSE(model.failure()) << model.failure()->message;
   forward::EvaluationFields fields;
@@ -151,8 +145,8 @@ TEST(WallRuns, OfAPipeAreLames) {
 // The pressure inside widens the pipe (above), by that name too.
 TEST(WallRuns, NameTheirSidesByInsideAndOutside) {
   const auto surface_of = [](const std::string& name) {
-    return read(changed(cylinder(), "on = \"skin/back\", pressure",
-                        "on = \"" + name + "\", pressure"))
+    return case_of(changed(cylinder(), "on = \"skin/back\", pressure",
+                           "on = \"" + name + "\", pressure"))
         .load_cases[0]
         .loads[0]
         .surfaces.text();
@@ -169,9 +163,9 @@ TEST(WallRuns, NameTheirSidesByInsideAndOutside) {
 }
 
 TEST(WallRuns, HaveExactGradients) {
-  const case_data::Case input =
-      read(fixed_springs(changed(changed(cylinder(), "fea = 5.0", "fea = 9.0"),
-                                 "film = 2.5", "film = 4.5")));
+  const case_data::Case input = case_of(
+      fixed_springs(changed(changed(cylinder(), "fea = 5.0", "fea = 9.0"),
+                            "film = 2.5", "film = 4.5")));
   VectorX design = case_data::initial_design(input);
   design[0] += 0.4;
   design[1] -= 0.3;
@@ -183,7 +177,7 @@ TEST(WallRuns, HaveExactGradients) {
 }
 
 TEST(WallRuns, FollowTheirThickness) {
-  const case_data::Case input = read(fixed_springs(cylinder()));
+  const case_data::Case input = case_of(fixed_springs(cylinder()));
   const forward::ForwardModel model(input);
   VectorX design = case_data::initial_design(input);
   const double before = model.evaluate(design).responses[2];
@@ -215,7 +209,7 @@ TEST(WallRuns, TellTheLargestSafeThickness) {
   const std::string text =
       changed(changed(cylinder(), "initial = 6.0", "initial = 70.0"),
               "bounds = [5.0, 8.0]", "bounds = [5.0, 80.0]");
-  const case_data::Case input = read(fixed_springs(text));
+  const case_data::Case input = case_of(fixed_springs(text));
   const forward::ForwardModel model(input);
   ASSERT_TRUE(model.failure());
   EXPECT_EQ(model.failure()->kind, FailureKind::SurfaceInvalid);
@@ -225,7 +219,7 @@ TEST(WallRuns, TellTheLargestSafeThickness) {
 }
 
 void expect_refused(const std::string& text, const std::string& words) {
-  const case_data::Case input = read(text);
+  const case_data::Case input = case_of(text);
   try {
     const forward::ForwardModel model(input);
     ADD_FAILURE() << "not refused: " << words;
@@ -245,10 +239,10 @@ TEST(WallRuns, NeedAMaterialAndNoSolidBodies) {
 
 TEST(WallRuns, WarnOfWhatTheirProcessCannotMake) {
   const auto warnings = [](const char* least) {
-    const case_data::Case input =
-        read(changed(fixed_springs(cylinder()), "[resolution]",
-                     "[process]\nname = \"sand casting\"\nsmallest_feature = " +
-                         std::string(least) + "\n\n[resolution]"));
+    const case_data::Case input = case_of(
+        changed(fixed_springs(cylinder()), "[resolution]",
+                "[process]\nname = \"sand casting\"\nsmallest_feature = " +
+                    std::string(least) + "\n\n[resolution]"));
     const forward::ForwardModel model(input);
     forward::EvaluationFields fields;
     model.evaluate(case_data::initial_design(input), &fields);
@@ -298,7 +292,7 @@ std::string waist() {
 }
 
 TEST(WallRuns, JoinWallsThatMeet) {
-  const case_data::Case input = read(waist());
+  const case_data::Case input = case_of(waist());
   EXPECT_EQ(case_data::solid_bodies(input).size(), 1U);
   const forward::ForwardModel model(input);
   ASSERT_FALSE(model.failure()) << model.failure()->message;

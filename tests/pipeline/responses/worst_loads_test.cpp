@@ -27,20 +27,9 @@ using testing::IsEmpty;
 /// Two solutions of the same equations.
 constexpr double kSolved = 1e-7;
 
-case_data::Case read(const std::string& text) {
-  reader::CaseReading reading = reader::read_case_text(text, "case.toml");
-  EXPECT_THAT(reading.problems, IsEmpty());
-  return std::move(*reading.input);
-}
-
 /// A leaning strut whose head is loaded through a point above it.
 std::string text_of(const std::string& load) {
-  std::string text = changed(strut(), "[curves.base]",
-                             "[design.lean]\ninitial = 3.0\n"
-                             "bounds = [-10.0, 10.0]\n\n"
-                             "[curves.base]");
-  text = changed(text, "center = [0, 0, \"length\"]",
-                 "center = [\"lean\", 0, \"length + lean / 4\"]");
+  std::string text = leaning_strut();
   text = changed(text, "density = 2.8e-9",
                  "density = 2.8e-9\nyield_strength = 20");
   text = changed(text, "[{ on = \"head_pad\", force = [\"load\", 0, 0] }]",
@@ -90,7 +79,7 @@ struct Found {
 };
 
 Found found(const std::string& text) {
-  const case_data::Case input = read(text);
+  const case_data::Case input = case_of(text);
   const forward::ForwardModel model(input);
   forward::EvaluationFields fields;
   const forward::Evaluation there =
@@ -158,7 +147,7 @@ forward::EvaluationFields stressed(const case_data::Case& input) {
 
 TEST(WorstLoads, AreShownByALoadCaseOfTheirName) {
   const Vec3 about = Vec3(0.5, -0.4, -1.0).normalized();
-  const case_data::Case input = read(in_cone(40.0, about));
+  const case_data::Case input = case_of(in_cone(40.0, about));
   const forward::EvaluationFields fields = stressed(input);
   const std::vector<forward::StressFigures> figures =
       forward::stress_figures(fields);
@@ -169,7 +158,7 @@ TEST(WorstLoads, AreShownByALoadCaseOfTheirName) {
   EXPECT_GE(d.dot(about), std::cos(40.0 * EIGEN_PI / 180.0) - 1e-12);
   const auto peak_along = [](const Vec3& direction) {
     const std::vector<forward::StressFigures> own =
-        forward::stress_figures(stressed(read(along(direction))));
+        forward::stress_figures(stressed(case_of(along(direction))));
     return own[0].readings.largest().von_mises;
   };
   const double peak = figures[3].readings.largest().von_mises;
@@ -201,7 +190,7 @@ TEST(WorstLoads, GradientsAreExactThroughTheModel) {
   for (const std::string& text :
        {text_of(kSize), in_cone(35.0, Vec3(0.5, -0.4, -1.0)),
         text_of(std::string(kSize) + ", by = \"rigid\"")}) {
-    const case_data::Case input = read(text);
+    const case_data::Case input = case_of(text);
     const forward::CaseGradientCheck check = forward::check_case_gradient(
         input, case_data::initial_design(input) + Eigen::Vector2d(0.8, -2.0));
     EXPECT_TRUE(check.report.passed)
@@ -212,10 +201,10 @@ TEST(WorstLoads, GradientsAreExactThroughTheModel) {
 
 TEST(WorstLoads, UnitLoadsHaveNames) {
   const case_data::Case input =
-      read(changed(text_of(kSize), "[study]",
-                   "[responses.any]\nkind = \"envelope\"\nof = \"sway\"\n\n"
-                   "[responses.one]\nkind = \"von_mises_norm\"\n"
-                   "load_case = \"service_y\"\n\n[study]"));
+      case_of(changed(text_of(kSize), "[study]",
+                      "[responses.any]\nkind = \"envelope\"\nof = \"sway\"\n\n"
+                      "[responses.one]\nkind = \"von_mises_norm\"\n"
+                      "load_case = \"service_y\"\n\n[study]"));
   ASSERT_EQ(input.load_cases.size(), 3U);
   EXPECT_EQ(input.load_cases[2].name, "service_z");
   ASSERT_EQ(input.directions.size(), 1U);
