@@ -41,8 +41,7 @@ Vec3 unit_rate(const Vec3& v, const Vec3& rate) {
 [[noreturn]] void refuse_wall() {
   throw InvalidInput(
       "a film that slides on curves, on bent walls or on several at once has "
-      "no "
-      "exact gradient: hold its rim on a curve, or let it slide on a plane");
+      "no exact gradient: hold its rim on a curve, or let it slide on a plane");
 }
 
 }  // namespace

@@ -473,6 +473,7 @@ void check_case(const Case& input, CaseProblems& problems) {
   if (problems.empty()) {
     check_liquid(input, problems);
     check_use(input, problems);
+    check_wetted_walls(input, problems);
     check_inner_surfaces(input, problems);
     check_numbers(input, problems);
   }

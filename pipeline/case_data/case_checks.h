@@ -20,6 +20,9 @@ void nest_film(Resolution& resolution, SourceLine line, CaseProblems& problems);
 /// Bodies close: each curve of a body's surfaces bounds two of them.
 void check_bodies(const Case& input, CaseProblems& problems);
 
+/// Films with a thickness are held on curves: their rims are square to them.
+void check_wetted_walls(const Case& input, CaseProblems& problems);
+
 /// When nothing is wrong so far: the numbers at the initial design and at both
 /// ends of every design variable, and warnings of what serves nothing.
 void check_case(const Case& input, CaseProblems& problems);

@@ -151,54 +151,46 @@ void check_caps(const Case& input, CaseProblems& problems) {
   }
 }
 
-/// One film, of one tension, ends on all curves of a wetted face, which hold
+/// One film, of one tension, ends at each curve of a wetted face, which holds
 /// nothing else.
-void check_wetted(const Case& input, CaseProblems& problems) {
-  for (const CapEntry& cap : input.caps) {
-    if (!cap.wetted) {
+void check_wetted_curve(const Case& input, const CapEntry& cap,
+                        const std::string& curve, CaseProblems& problems) {
+  std::vector<std::string> ends;
+  std::size_t films = 0;
+  for (const FilmEntry& film : input.films) {
+    if (!is_among(film.spec.curves, curve)) {
       continue;
     }
-    for (const std::string& curve : cap.spec.curves()) {
-      std::vector<std::string> films;
-      std::vector<std::string> solids;
-      for (const FilmEntry& film : input.films) {
-        if (is_among(film.spec.curves, curve)) {
-          films.push_back(film.spec.name);
-          if (film.tension.of_place) {
-            problems.add(
-                cap.line,
-                fmt::format("film '{}' slides on the wall of '{}', and "
-                            "its tension depends on the place; give "
-                            "it a number",
-                            film.spec.name, cap.spec.name));
-          }
-          if (!is_among(film.spec.curves, cap.spec.curve)) {
-            problems.add(cap.line,
-                         fmt::format("film '{}' ends at curve '{}' of '{}' and "
-                                     "not at '{}'; a wetted face is of one "
-                                     "film: make another for this one",
-                                     film.spec.name, curve, cap.spec.name,
-                                     cap.spec.curve));
-          }
-        }
-      }
-      for (const CapEntry& other : input.caps) {
-        if (is_among(other.spec.curves(), curve) && &other != &cap) {
-          solids.push_back(other.spec.name);
-        }
-      }
-      if (films.size() != 1 || !solids.empty()) {
-        problems.add(
-            cap.line,
-            fmt::format(
-                "solid '{}' is wetted at curve '{}', where {} end; "
-                "expected one film there and no other solid",
-                cap.spec.name, curve,
-                films.empty() && solids.empty()
-                    ? "no films"
-                    : fmt::format("{}", fmt::join(films, ", ")) +
-                          (films.empty() || solids.empty() ? "" : ", ") +
-                          fmt::format("{}", fmt::join(solids, ", "))));
+    ends.push_back(film.spec.name);
+    ++films;
+    if (film.tension.of_place) {
+      problems.add(cap.line,
+                   fmt::format("film '{}' slides on the wall of '{}', and its "
+                               "tension depends on the place; give it a number",
+                               film.spec.name, cap.spec.name));
+    }
+  }
+  for (const CapEntry& other : input.caps) {
+    if (is_among(other.spec.curves(), curve) && &other != &cap) {
+      ends.push_back(other.spec.name);
+    }
+  }
+  if (films != 1 || ends.size() != 1) {
+    problems.add(
+        cap.line,
+        fmt::format("solid '{}' is wetted at curve '{}', where {} end; "
+                    "expected one film there and no other solid",
+                    cap.spec.name, curve,
+                    ends.empty() ? "no films"
+                                 : fmt::format("{}", fmt::join(ends, ", "))));
+  }
+}
+
+void check_wetted(const Case& input, CaseProblems& problems) {
+  for (const CapEntry& cap : input.caps) {
+    if (cap.wetted) {
+      for (const std::string& curve : cap.spec.curves()) {
+        check_wetted_curve(input, cap, curve, problems);
       }
     }
   }
@@ -251,6 +243,22 @@ void check_closed(const Case& input, const BodyEntry& body,
 }
 
 }  // namespace
+
+void check_wetted_walls(const Case& input, CaseProblems& problems) {
+  for (const WallEntry& wall : input.walls) {
+    const std::vector<std::string> curves = curves_of_wall(input, wall);
+    for (const CapEntry& cap : input.caps) {
+      if (cap.wetted && is_among(curves, cap.spec.curve)) {
+        problems.add(
+            wall.line,
+            fmt::format("walls.{} is of a film that slides on the wall of "
+                        "'{}', which the rim of a film with a thickness would "
+                        "leave; make '{}' a cap, or fill a body instead",
+                        wall.name, cap.spec.name, cap.spec.name));
+      }
+    }
+  }
+}
 
 void check_bodies(const Case& input, CaseProblems& problems) {
   check_caps(input, problems);

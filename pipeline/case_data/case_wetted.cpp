@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -11,16 +13,50 @@ namespace meniscus::case_data {
 namespace {
 
 constexpr int kPlacesOnRim = 16;
-constexpr double kOnWall = 1e-9;  // of the curve's size
+constexpr double kOnWall = 1e-9;       // of the curve's size
+constexpr double kSameEnergy = 1e-12;  // of films of one tension, or at 90 deg
 
-/// The film that ends on a wall; null where none does.
-const FilmEntry* film_at(const Case& input, const std::string& curve) {
-  const auto found = std::find_if(
-      input.films.begin(), input.films.end(), [&](const FilmEntry& film) {
-        return std::find(film.spec.curves.begin(), film.spec.curves.end(),
-                         curve) != film.spec.curves.end();
-      });
-  return found == input.films.end() ? nullptr : &*found;
+/// The films that end at the curves of a wetted face; without those whose
+/// tension depends on the place, of which check_bodies() tells.
+std::vector<const FilmEntry*> films_at(const Case& input, const CapEntry& cap) {
+  const std::vector<std::string> curves = cap.spec.curves();
+  std::vector<const FilmEntry*> result;
+  for (const FilmEntry& film : input.films) {
+    if (!film.tension.of_place &&
+        std::any_of(curves.begin(), curves.end(), [&](const auto& curve) {
+          return std::find(film.spec.curves.begin(), film.spec.curves.end(),
+                           curve) != film.spec.curves.end();
+        })) {
+      result.push_back(&film);
+    }
+  }
+  return result;
+}
+
+/// What a film needs of the wall, -T cos(contact angle) (Young).
+Dual1 energy_for(const FilmEntry& film, const WettedWall& wall,
+                 const CaseValues& values) {
+  return -(values.dual(film.tension.quantity) *
+           cos(values.dual(wall.contact_angle)));
+}
+
+/// A face has one energy per area for all films that end on it.
+void check_one_energy(const Case& input, const CapEntry& cap,
+                      const std::vector<const FilmEntry*>& films,
+                      const CaseValues& values) {
+  const double first = energy_for(*films[0], *cap.wetted, values).value;
+  for (const FilmEntry* film : films) {
+    const double energy = energy_for(*film, *cap.wetted, values).value;
+    const double tension = values.dual(film->tension.quantity).value;
+    if (!(std::abs(energy - first) <= kSameEnergy * std::abs(tension))) {
+      values.problems().push_back(fmt::format(
+          "{}: films '{}' and '{}' end on the wall of '{}' and need {:.6g} and "
+          "{:.6g} of energy per area there; give them one tension, or a "
+          "contact angle of 90 deg",
+          place(input, cap.line), films[0]->spec.name, film->spec.name,
+          cap.spec.name, first, energy));
+    }
+  }
 }
 
 Points places_on(const curves::Curve& curve) {
@@ -68,15 +104,17 @@ films::PlaneWall wall_of(const Case& input, const CapEntry& cap,
         return a > 0.0 && a < std::numbers::pi && std::abs(std::cos(a)) < 1.0;
       },
       "above 0 and below 180 deg");
-  const FilmEntry* film = film_at(input, cap.spec.curve);
-  if (film == nullptr || film->tension.of_place) {
+  const std::vector<const FilmEntry*> films = films_at(input, cap);
+  if (films.empty()) {
     return wall;  // check_bodies() has told so
   }
-  const Dual1 tension = values.dual(film->tension.quantity);
-  const Dual1 energy = -(tension * cos(values.dual(wetted.contact_angle)));
-  wall.tension = !values.are_rates()    ? energy.value
-                 : energy.is_constant() ? 0.0
-                                        : energy.gradient[0];
+  const Dual1 energy = energy_for(*films[0], wetted, values);
+  if (!values.are_rates()) {
+    wall.tension = energy.value;
+    check_one_energy(input, cap, films, values);
+  } else {
+    wall.tension = energy.is_constant() ? 0.0 : energy.gradient[0];
+  }
   return wall;
 }
 

@@ -21,14 +21,8 @@ std::string sliding(const std::string& angle = "contact_angle = \"60 deg\"") {
                      angle);
 }
 
-case_data::Case read(const std::string& text) {
-  reader::CaseReading reading = reader::read_case_text(text, "case.toml");
-  EXPECT_THAT(reading.problems, IsEmpty());
-  return std::move(*reading.input);
-}
-
 TEST(CaseWetted, HasYoungsEnergyAndItsRate) {
-  const case_data::Case input = read(changed(
+  const case_data::Case input = case_of(changed(
       sliding("contact_angle = \"foot / 25\""), "curves = [\"base\", \"head\"]",
       "curves = [\"base\", \"head\"]\ntension = \"foot / 10\""));
   const VectorX design = case_data::initial_design(input);
@@ -41,10 +35,27 @@ TEST(CaseWetted, HasYoungsEnergyAndItsRate) {
 }
 
 TEST(CaseWetted, MeetsAtARightAngleWhereNoneIsSaid) {
-  const case_data::Case input = read(sliding(""));
+  const case_data::Case input = case_of(sliding(""));
   const auto inputs =
       case_data::evaluate(input, case_data::initial_design(input));
   EXPECT_NEAR(inputs.film_system.caps[0].wall->tension, 0.0, 1e-15);
+}
+
+/// A second skin within the first, which slides on the same face.
+std::string doubled(const std::string& angle, const std::string& tension) {
+  const std::string text = changed(sliding(angle), "curve = \"base\"\nat",
+                                   "curve = \"base\"\nholes = [\"hole\"]\nat");
+  return changed(
+      changed(changed(text, "[solids.foot_pad]",
+                      "[curves.hole]\nkind = \"circle\"\n"
+                      "center = [0, 0, 0]\nnormal = [0, 0, 1]\nradius = 8\n"
+                      "[curves.vent]\nkind = \"circle\"\n"
+                      "center = [0, 0, \"length\"]\nnormal = [0, 0, 1]\n"
+                      "radius = 6\n[films.core]\nkind = \"branch\"\n"
+                      "curves = [\"hole\", \"vent\"]\ntension = " +
+                          tension + "\n\n[solids.foot_pad]"),
+              "curve = \"head\"", "curve = \"head\"\nholes = [\"vent\"]"),
+      "[\"skin\", ", "[\"skin\", \"core\", ");
 }
 
 void expect_problem(const std::string& text, const std::string& message) {
@@ -78,6 +89,21 @@ TEST(CaseWetted, MistakesAreToldWithTheirLines) {
               "inner = \"head\"\n\n[solids.head_pad]"),
       "solid 'foot_pad' is wetted at curve 'base', where skin, plug end; "
       "expected one film there and no other solid");
+  expect_problem(changed(good, "[solids.foot_pad]",
+                         "[walls.shell]\nfilms = [\"skin\"]\nthickness = 2\n"
+                         "material = \"aluminium\"\n\n[solids.foot_pad]"),
+                 "case.toml:28: walls.shell is of a film that slides on the "
+                 "wall of 'foot_pad'");
+}
+
+TEST(CaseWetted, FilmsOnOneFaceNeedOneEnergyOfIt) {
+  const std::string angle = "contact_angle = \"60 deg\"";
+  EXPECT_THAT(problems_of(doubled(angle, "1")), IsEmpty());
+  EXPECT_THAT(problems_of(doubled("", "2")), IsEmpty());
+  expect_problem(doubled(angle, "2"),
+                 "films 'skin' and 'core' end on the wall of 'foot_pad' and "
+                 "need -0.5 and -1 of energy per area there; give them one "
+                 "tension, or a contact angle of 90 deg");
 }
 
 }  // namespace
