@@ -352,16 +352,16 @@ void check_fixed_materials(const Case& input, const EvaluatedCase& initial,
 /// The case's numbers at the initial design and, one variable at a time, at
 /// the ends of the bounds.
 void check_numbers(const Case& input, CaseProblems& problems) {
-  const auto at = [&](const VectorX& design) {
+  const auto at = [&](const VectorX& design, const std::string& which) {
     std::vector<std::string> found;
     EvaluatedCase inputs = evaluate(input, design, found);
     for (const std::string& problem : found) {
-      problems.add_text(problem);
+      problems.add_text(problem + which);
     }
     return inputs;
   };
   const VectorX initial = initial_design(input);
-  const EvaluatedCase inputs = at(initial);
+  const EvaluatedCase inputs = at(initial, "");
   if (!problems.empty()) {
     return;
   }
@@ -373,7 +373,9 @@ void check_numbers(const Case& input, CaseProblems& problems) {
     for (const double end : {input.design[k].lower, input.design[k].upper}) {
       VectorX design = initial;
       design[static_cast<Eigen::Index>(k)] = end;
-      const EvaluatedCase there = at(design);
+      const EvaluatedCase there =
+          at(design, fmt::format(" (with '{}' at the end of its bounds, {:g})",
+                                 input.design[k].name, end));
       if (problems.empty()) {
         check_merged(input, inputs, there, problems);
         check_fixed_materials(input, inputs, there, problems);

@@ -207,12 +207,13 @@ void check_meetings(const Case& input, const films::FilmSystem& system,
       continue;  // faces that join: check_sides() looks at them
     }
     const Vec3& at = meeting.place;
+    const std::string of_second = where(input.curves[b], values);
     values.problems().push_back(fmt::format(
         "{}: curves '{}' and '{}' meet near ({:.4g}, {:.4g}, {:.4g}){}; films "
         "join where they name the same curve, other curves must keep apart",
         place(input, input.curves[b].line), input.curves[a].name,
         input.curves[b].name, at.x(), at.y(), at.z(),
-        where(input.curves[b], values)));
+        of_second.empty() ? where(input.curves[a], values) : of_second));
   }
 }
 
