@@ -1,5 +1,6 @@
 // Films that slide on plane walls at a contact angle.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -184,44 +185,74 @@ std::shared_ptr<films::StartFacets> rows_of_facets() {
   return start;
 }
 
-/// The film of a half at rest, with its mirror image.
-std::shared_ptr<films::StartFacets> mirrored(const SurfaceMesh& half) {
+/// A film of a part at rest, with its mirror images in planes through 0 of
+/// these normals.
+std::shared_ptr<films::StartFacets> mirrored(const SurfaceMesh& part,
+                                             const std::string& film,
+                                             const Points& normals) {
   auto start = std::make_shared<films::StartFacets>();
-  std::vector<int> upper(half.points.size(), -1);
-  std::vector<int> lower(half.points.size(), -1);
-  for (std::size_t f = 0; f < half.facets.size(); ++f) {
-    if (half.labels[half.facet_label[f]] != "skin") {
+  std::vector<int> number(part.points.size(), -1);
+  for (std::size_t f = 0; f < part.facets.size(); ++f) {
+    if (part.labels[part.facet_label[f]] != film) {
       continue;
     }
-    for (const int v : half.facets[f]) {
-      if (upper[v] >= 0) {
-        continue;
+    Triangle& facet = start->facets.emplace_back(part.facets[f]);
+    for (int& v : facet) {
+      if (number[v] < 0) {
+        number[v] = static_cast<int>(start->points.size());
+        start->points.push_back(part.points[v]);
       }
-      const Vec3& at = half.points[v];
-      upper[v] = lower[v] = static_cast<int>(start->points.size());
-      start->points.push_back(at);
-      if (at.z() > kFlat) {
-        lower[v] = static_cast<int>(start->points.size());
-        start->points.emplace_back(at.x(), at.y(), -at.z());
+      v = number[v];
+    }
+  }
+  for (const Vec3& n : normals) {
+    std::vector<int> image(start->points.size());
+    for (std::size_t v = 0; v < image.size(); ++v) {
+      const Vec3 at = start->points[v];
+      image[v] = static_cast<int>(v);
+      if (std::abs(n.dot(at)) > kFlat) {
+        image[v] = static_cast<int>(start->points.size());
+        start->points.emplace_back(at - 2.0 * n.dot(at) * n);
       }
     }
-    const auto [a, b, c] = half.facets[f];
-    start->facets.push_back({upper[a], upper[b], upper[c]});
-    start->facets.push_back({lower[a], lower[c], lower[b]});
+    for (std::size_t f = 0, count = start->facets.size(); f < count; ++f) {
+      const auto [a, b, c] = start->facets[f];
+      start->facets.push_back({image[a], image[c], image[b]});
+    }
   }
   return start;
 }
 
+/// How far the points of a film are from those of another, at most.
+double farthest_from(const Points& others, const SurfaceMesh& part,
+                     const std::string& film) {
+  double farthest = 0.0;
+  for (std::size_t f = 0; f < part.facets.size(); ++f) {
+    for (const int v : part.facets[f]) {
+      if (part.labels[part.facet_label[f]] == film) {
+        double nearest = 1.0;
+        for (const Vec3& point : others) {
+          nearest = std::min(nearest, (point - part.points[v]).norm());
+        }
+        farthest = std::max(farthest, nearest);
+      }
+    }
+  }
+  return farthest;
+}
+
+constexpr double kSameFilm = 1e-9;  // but for rounding
+
 // Mirrored meshes, at the frozen design and at others: what slides on the plane
 // and what the whole has there are the same film.
 TEST(SlidingFilm, HalfAFilmIsTheWholesToRounding) {
-  constexpr double kRounding = 1e-9;
   frozen::FilmModelOptions options = {.edge = 0.29, .refinements = 0};
   const auto rows = rows_of_facets();
   const frozen::FilmModel part =
       frozen::FilmModel::freeze(tube_of(rows, true, 0.0), options);
   ASSERT_FALSE(part.reference().failure);
-  const auto both = mirrored(part.fine_mesh(part.reference().points));
+  const auto both = mirrored(part.fine_mesh(part.reference().points), "skin",
+                             {Vec3::UnitZ()});
   options.at_rest = true;
   const frozen::FilmModel whole =
       frozen::FilmModel::freeze(tube_of(both, false, 0.0), options);
@@ -231,22 +262,107 @@ TEST(SlidingFilm, HalfAFilmIsTheWholesToRounding) {
     ASSERT_FALSE(all.failure) << all.failure->message;
     ASSERT_FALSE(half.failure) << half.failure->message;
     EXPECT_NEAR(half.report.bodies[0].pressure, all.report.bodies[0].pressure,
-                kRounding);
-    EXPECT_NEAR(2.0 * half.report.area, all.report.area, kRounding);
-    const SurfaceMesh mesh = part.fine_mesh(half.points);
-    double farthest = 0.0;
-    for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
-      for (const int v : mesh.facets[f]) {
-        if (mesh.labels[mesh.facet_label[f]] == "skin") {
-          double nearest = 1.0;
-          for (const Vec3& point : all.points) {
-            nearest = std::min(nearest, (point - mesh.points[v]).norm());
-          }
-          farthest = std::max(farthest, nearest);
-        }
+                kSameFilm);
+    EXPECT_NEAR(2.0 * half.report.area, all.report.area, kSameFilm);
+    EXPECT_LT(farthest_from(all.points, part.fine_mesh(half.points), "skin"),
+              kSameFilm)
+        << p;
+  }
+}
+
+/// The rim that holds a tube along z or along x, or its image on other sides.
+curves::Ellipse rim(bool along_z, double p, double side_x, double side_z) {
+  const double near = 0.6 + 0.05 * p;
+  const double off = 3.0 + 0.1 * p;
+  curves::Ellipse result;
+  result.center = Vec3(side_x * (along_z ? off : near), 0.0,
+                       side_z * (along_z ? near : off));
+  result.normal = along_z ? Vec3(side_x * 0.2 * p, 0.0, side_z)
+                          : Vec3(side_x, 0.0, side_z * 0.1 * p);
+  result.axis = along_z ? Vec3::UnitX() : Vec3::UnitZ();
+  result.radius_1 = 1.0;
+  result.radius_2 = 1.0 - 0.1 * p;
+  return result;
+}
+
+/// A quarter of four tubes of one liquid, two along z and two along x, which
+/// end on the planes across z and x.
+films::FilmSystem quarter_of_tubes(double p) {
+  films::FilmSystem system;
+  system.curves = {
+      {"rim_z", rim(true, p, 1.0, 1.0)},
+      {"rim_x", rim(false, p, 1.0, 1.0)},
+      {"begin_z", curves::Circle{Vec3(3, 0, 0), -Vec3::UnitZ(), 1.0}},
+      {"begin_x", curves::Circle{Vec3(0, 0, 3), -Vec3::UnitX(), 1.0}}};
+  system.films = {
+      {"along_z", films::FilmKind::Loft, {"rim_z", "begin_z"}, 1.0},
+      {"along_x", films::FilmKind::Loft, {"rim_x", "begin_x"}, 1.0}};
+  system.caps = {{"lid_z", "rim_z"},
+                 {"lid_x", "rim_x"},
+                 {"cut_z", "begin_z"},
+                 {"cut_x", "begin_x"}};
+  system.caps[2].wall = films::PlaneWall{.normal = Vec3::UnitZ()};
+  system.caps[3].wall = films::PlaneWall{.normal = Vec3::UnitX()};
+  system.bodies = {{"part",
+                    {"along_z", "along_x", "lid_z", "lid_x", "cut_z", "cut_x"},
+                    4.4 * (1.0 + 0.1 * p),
+                    std::nullopt}};
+  return system;
+}
+
+using FilmStarts = std::array<std::shared_ptr<const films::StartFacets>, 2>;
+
+films::FilmSystem all_tubes(const FilmStarts& starts, double p) {
+  films::FilmSystem system;
+  system.keep_facets = true;
+  system.bodies = {{"part", {}, 17.6 * (1.0 + 0.1 * p), std::nullopt}};
+  for (const bool along_z : {true, false}) {
+    const std::string name = along_z ? "along_z" : "along_x";
+    films::FilmSpec film{name, films::FilmKind::Facets, {}, 1.0};
+    film.start = starts[along_z ? 0 : 1];
+    film.within = 0.01;
+    system.bodies[0].enclosed_by.push_back(name);
+    for (const double x : {-1.0, 1.0}) {
+      for (const double z : {-1.0, 1.0}) {
+        const std::string number = std::to_string(system.curves.size());
+        film.curves.push_back("rim_" + number);
+        system.curves.push_back({film.curves.back(), rim(along_z, p, x, z)});
+        system.caps.push_back({"lid_" + number, film.curves.back()});
+        system.bodies[0].enclosed_by.push_back("lid_" + number);
       }
     }
-    EXPECT_LT(farthest, kRounding) << p;
+    system.films.push_back(std::move(film));
+  }
+  return system;
+}
+
+TEST(SlidingFilm, AQuarterOfFilmsIsTheWholesToRounding) {
+  frozen::FilmModelOptions options = {.edge = 0.4, .refinements = 0};
+  const frozen::FilmModel part =
+      frozen::FilmModel::freeze(quarter_of_tubes(0.0), options);
+  ASSERT_FALSE(part.reference().failure) << part.reference().failure->message;
+  const SurfaceMesh drawn = part.fine_mesh(part.reference().points);
+  const Points planes = {Vec3::UnitZ(), Vec3::UnitX()};
+  const FilmStarts starts = {mirrored(drawn, "along_z", planes),
+                             mirrored(drawn, "along_x", planes)};
+  options.at_rest = true;
+  options.edge = 10.0;  // the facets as they are
+  const frozen::FilmModel whole =
+      frozen::FilmModel::freeze(all_tubes(starts, 0.0), options);
+  ASSERT_FALSE(whole.reference().failure) << whole.reference().failure->message;
+  for (const double p : {0.0, 0.7}) {
+    const settle::FilmState all = whole.settle(all_tubes(starts, p));
+    const settle::FilmState quarter = part.settle(quarter_of_tubes(p));
+    ASSERT_FALSE(all.failure) << all.failure->message;
+    ASSERT_FALSE(quarter.failure) << quarter.failure->message;
+    EXPECT_NEAR(quarter.report.bodies[0].pressure,
+                all.report.bodies[0].pressure, kSameFilm);
+    EXPECT_NEAR(4.0 * quarter.report.area, all.report.area, kSameFilm);
+    const SurfaceMesh mesh = part.fine_mesh(quarter.points);
+    for (const char* film : {"along_z", "along_x"}) {
+      EXPECT_LT(farthest_from(all.points, mesh, film), kSameFilm)
+          << film << " " << p;
+    }
   }
 }
 
