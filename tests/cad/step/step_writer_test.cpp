@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "cad/step/mirror_brep.h"
 #include "cad/step/step_edges.h"
 #include "cad/step/step_reader.h"
 #include "core/atomic_file.h"
@@ -72,6 +73,23 @@ TEST_F(StepWriter, WritesAClosedSolidWithNamesAndUnit) {
   EXPECT_THAT(text, testing::HasSubstr("LENGTH_UNIT"));
   EXPECT_THAT(text, testing::HasSubstr("(1.,2.,3.)"));
   EXPECT_THAT(text, testing::HasSubstr("1970-01-01"));
+}
+
+TEST_F(StepWriter, WritesASolidWithItsMirrorImage) {
+  solid::Brep brep = box({1.0, 2.0, 3.0});
+  const step::MirrorPlane plane{
+      .at = Vec3(0, 2, 0), .normal = Vec3::UnitY(), .cuts = {"side_3"}};
+  const solid::Brep whole = step::with_mirror_image(
+      brep, plane, [](const std::string& name) { return name + " too"; });
+  EXPECT_EQ(whole.faces.size(), 10U);
+  EXPECT_EQ(whole.edges.size(), 20U);
+  const auto file = folder_.path() / "boxes.step";
+  const step::StepReport report =
+      step::write_step(file, whole, {.name = "Two"});
+  EXPECT_EQ(report.shells, 1);
+  EXPECT_NEAR(report.volume, 12.0, 1e-12);
+  EXPECT_LT((report.mass_center - Vec3(0.5, 2.0, 1.5)).norm(), 1e-12);
+  EXPECT_THAT(read_file(file), testing::HasSubstr("'side_2 too'"));
 }
 
 TEST_F(StepWriter, WritesTheSameBitsTwice) {
