@@ -17,6 +17,7 @@
 #include "core/geometry/mesh_checks.h"
 #include "core/math/union_find.h"
 #include "io/vtk_files.h"
+#include "pipeline/case_data/case_symmetry.h"
 #include "pipeline/case_films/film_advice.h"
 #include "pipeline/case_films/film_start.h"
 #include "pipeline/forward/part_warnings.h"
@@ -251,10 +252,7 @@ void write_evolved(const case_data::Case& input,
     fs::remove(folder / "film.png");  // of another film
   }
   results::claim_files(folder, {"film.vtp", "film.json", "film.png"});
-  std::vector<std::string> solids;
-  for (const films::CapSpec& cap : inputs.film_system.caps) {
-    solids.push_back(cap.name);
-  }
+  const std::vector<std::string> solids = case_data::solids_of_whole(input);
   results::write_film(input, model.fine_mesh(film.points), folder);
   std::vector<forward::FilmFrame> frames;
   if (arguments.frames) {

@@ -12,6 +12,7 @@
 #include "pipeline/case_data/case_loads.h"
 #include "pipeline/case_data/case_responses.h"
 #include "pipeline/case_data/case_sides.h"
+#include "pipeline/case_data/case_symmetry.h"
 #include "pipeline/case_data/case_values.h"
 #include "pipeline/case_data/case_wetted.h"
 #include "pipeline/case_data/response_entries.h"
@@ -293,6 +294,7 @@ EvaluatedCase evaluate(const Case& input, const VectorX& design,
     check_sides(input, result.film_system, values);
     check_places(input, result, values);
     check_on_walls(input, result.film_system, values);
+    check_symmetry(input, result, values);
   }
   return result;
 }

@@ -41,8 +41,9 @@ struct Case {
   std::vector<Parameter> parameters;
   std::vector<int> parameter_order;  // each after those that it uses
   std::vector<CurveEntry> curves;
+  std::vector<SymmetryPlane> symmetry;  // at right angles to each other
   std::vector<FilmEntry> films;
-  std::vector<CapEntry> caps;
+  std::vector<CapEntry> caps;               // cut faces are the last
   std::vector<FeatureEntry> features;       // whose faces are among the caps
   std::vector<StepSolidEntry> step_solids;  // the same
   std::vector<BodyEntry> bodies;

@@ -117,9 +117,18 @@ struct WettedWall {
   Quantity contact_angle;  // [rad]
 };
 
+/// A plane in which the part that the case draws is mirrored. What is drawn
+/// lies on the side that the normal points away from.
+struct SymmetryPlane {
+  Vec3 at = Vec3::Zero();       // a point of it [length]
+  Vec3 normal = Vec3::UnitZ();  // of length 1
+  SourceLine line = 0;
+};
+
 struct CapEntry {
   films::CapSpec spec;  // wall filled in by evaluate()
   std::optional<WettedWall> wetted;
+  int symmetry = -1;     // index of the plane that it lies in; -1: none
   bool is_file = false;  // of facets or a STEP solid; else a flat disk
   SourceLine line = 0;
 };
@@ -383,8 +392,9 @@ struct ResponseEntry {
   double angle = 0.0;    // of Overhang, Draft [rad]
   double width = 0.0;    // of their switch about it [rad]
   std::vector<std::string> base;  // of Overhang: surfaces on the build plate
-  std::vector<int> parts;         // of Envelope: indices of responses above
-  bool least = false;             // of Envelope: the smallest of them
+  int images = 1;  // of the drawn part, itself among them: it is their sum
+  std::vector<int> parts;  // of Envelope: indices of responses above
+  bool least = false;      // of Envelope: the smallest of them
   /// Of BucklingFactor and Frequency: which mode, from 1; and the width of the
   /// cluster that a bound is over, 0: of that mode alone.
   int number = 1;

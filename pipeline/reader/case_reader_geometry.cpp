@@ -7,6 +7,7 @@
 
 #include "pipeline/case_data/case_checks.h"
 #include "pipeline/case_data/case_curves.h"
+#include "pipeline/case_data/case_symmetry.h"
 #include "pipeline/reader/case_reader_tables.h"
 
 namespace meniscus::reader {
@@ -191,6 +192,9 @@ void read_geometry(CaseContext& context, const toml::table& root,
   read_materials(context, root, result);
   const std::size_t before = context.problems.size();
   read_bodies(context, root, result);
+  if (context.problems.empty()) {
+    case_data::add_cut_faces(result, context.problems);
+  }
   case_data::check_bodies(result, context.problems);
   context.bodies_good =
       !result.bodies.empty() && context.problems.size() == before;

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "pipeline/case_data/case_checks.h"
+#include "pipeline/case_data/case_symmetry.h"
 
 namespace meniscus::reader {
 
@@ -357,6 +358,26 @@ void read_process(CaseContext& context, const toml::table& root,
   result.process.smallest_feature = least;
 }
 
+void read_symmetry(CaseContext& context, const toml::table& root,
+                   case_data::Case& result) {
+  const auto table = single_table(context, root, "symmetry");
+  if (!table) {
+    return;
+  }
+  for (const CaseTable& plane : table->tables("planes", "plane")) {
+    const auto at = plane.constant_vector("at");
+    const auto normal = plane.constant_vector("normal");
+    if (normal && !(normal->norm() > 0.0)) {
+      context.problems.add(plane.line("normal"),
+                           "symmetry.planes: normal is 0; expected a direction "
+                           "across the plane, away from what is drawn");
+    } else if (at && normal) {
+      result.symmetry.push_back({*at, normal->normalized(), plane.line()});
+    }
+  }
+  case_data::check_planes(result, context.problems);
+}
+
 /// Does some text of the node's entries match? Of tables only what stands under
 /// a key for quantities, unless `within` one.
 bool has_quantity(const toml::node& node, const std::regex& pattern,
@@ -485,12 +506,14 @@ void read_tables(const toml::table& root, const OverriddenNodes& overridden,
   read_parameters(context, parameters, result);
   read_design(design, context, result);
   find_measures(context, result);
+  read_symmetry(context, root, result);
   read_geometry(context, root, result);
   read_walls(context, root, result);
   read_fields(context, root, result);
   read_resolution(context, root, result);
   read_process(context, root, result);
   read_analysis(context, root, result);
+  case_data::apply_symmetry(result, context.problems);
   warn_of_unused(context, root, result);
 }
 

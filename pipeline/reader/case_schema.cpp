@@ -37,6 +37,19 @@ std::vector<TableSpec> make_tables() {
        {{"initial", K::Constant, std::nullopt, true,
          "value at which the model freezes and the study starts"},
         {"bounds", K::Bounds, std::nullopt, true, "[least, largest]"}}},
+      {"symmetry",
+       false,
+       N::Optional,
+       "Planes in which what the case draws is mirrored",
+       {{"planes", K::Planes, D::None, true,
+         "one to three, at right angles to each other"}}},
+      {"plane",
+       false,
+       N::Optional,
+       "A plane of symmetry",
+       {{"at", K::ConstantVector, D::Length, true, "a point of it"},
+        {"normal", K::ConstantVector, std::nullopt, true,
+         "across it, away from what is drawn; any length but 0"}}},
       curve_table(),
       film_table(),
       solid_table(),
@@ -237,7 +250,7 @@ std::string either_of(std::vector<std::string> names) {
 
 bool is_entry_table(const std::string& name) {
   return name == "support" || name == "load" || name == "exclude" ||
-         name == "constraint";
+         name == "plane" || name == "constraint";
 }
 
 bool is_later_table(const std::string& name) {

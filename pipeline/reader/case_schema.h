@@ -39,6 +39,7 @@ enum class KeyType {
   Supports,        // array of inline tables: table "support"
   Loads,           // array of inline tables: table "load"
   Zones,           // array of inline tables: table "exclude"
+  Planes,          // array of inline tables: table "plane"
   Constraints,     // array of inline tables: table "constraint"
   Members          // tables by name, or the name of a csv file
 };

@@ -66,6 +66,8 @@ const char* type_text(const KeySpec& key) {
       return "loads";
     case K::Zones:
       return "zones";
+    case K::Planes:
+      return "planes";
     case K::Constraints:
       return "constraints";
     case K::Members:
@@ -81,7 +83,7 @@ const char* dimension_text(const KeySpec& key) {
       key.type != K::NamesOrNumbers && key.type != K::Integer &&
       key.type != K::Counts && key.type != K::Facets && key.type != K::Flag &&
       key.type != K::IntegerMap && key.type != K::Supports &&
-      key.type != K::Loads && key.type != K::Zones &&
+      key.type != K::Loads && key.type != K::Zones && key.type != K::Planes &&
       key.type != K::Constraints && key.type != K::Members;
   if (key.type == K::ConstantMap) {
     return "the response's";
@@ -230,6 +232,8 @@ Json type_schema(const KeySpec& key) {
       return array(object_schema(case_table("load")), 1, 0);
     case K::Zones:
       return array(object_schema(case_table("exclude")), 1, 0);
+    case K::Planes:
+      return array(object_schema(case_table("plane")), 1, 3);
     case K::Constraints:
       return array(object_schema(case_table("constraint")), 1, 0);
     case K::Members:

@@ -372,9 +372,8 @@ ResponsePartials scan_distance(const ResponseTask& task) {
                     task.response.measure, points.size()));
 }
 
-}  // namespace
-
-ResponsePartials compute_partials(const ResponseTask& task) {
+/// Of the part that the case draws.
+ResponsePartials of_drawn_part(const ResponseTask& task) {
   using Kind = case_data::ResponseKind;
   if (task.response.worst_in) {
     return worst_partials(task);
@@ -443,6 +442,48 @@ ResponsePartials compute_partials(const ResponseTask& task) {
       break;  // of the responses above it
   }
   return {};
+}
+
+template <class Items>
+void multiply_all(Items& items, double factor) {
+  for (auto& item : items) {
+    item *= factor;
+  }
+}
+
+/// `factor` times the response.
+void multiply(ResponsePartials& partials, double factor) {
+  partials.value *= factor;
+  multiply_all(partials.by_nodes, factor);
+  for (CasePartials& of_case : partials.cases) {
+    of_case.by_displacement *= factor;
+    of_case.self_adjoint *= factor;
+    of_case.by_forces *= factor;
+    of_case.by_temperature *= factor;
+  }
+  partials.by_direction *= factor;
+  partials.by_point *= factor;
+  multiply_all(partials.by_pin_point, factor);
+  multiply_all(partials.by_density, factor);
+  multiply_all(partials.by_modulus, factor);
+  frozen::FilmCovector& film = partials.film;
+  multiply_all(film.points, factor);
+  film.pressures *= factor;
+  film.volumes *= factor;
+  film.areas *= factor;
+  film.energy *= factor;
+  multiply_all(film.directions, factor);
+  film.tensions *= factor;
+}
+
+}  // namespace
+
+ResponsePartials compute_partials(const ResponseTask& task) {
+  ResponsePartials result = of_drawn_part(task);
+  if (task.response.images > 1) {
+    multiply(result, task.response.images);
+  }
+  return result;
 }
 
 double ks_scale(const case_data::ResponseEntry& response,

@@ -14,6 +14,7 @@
 #include "pipeline/store/refreeze.h"
 #include "pipeline/store/stored_case.h"
 #include "pipeline/store/study_store.h"
+#include "pipeline/whole/whole_part.h"
 
 namespace meniscus::results {
 
@@ -71,9 +72,11 @@ const SettledFilm& ExportJob::film() {
 
 SurfaceMesh ExportJob::bodies_surface() {
   const SettledFilm& settled = film();
-  return inputs_.walls.empty() ? settled.model.solids(settled.state.points)
-                               : forward::boundary_of(inputs_, settled.model,
-                                                      settled.state.points);
+  return whole::whole_surface(
+      input_,
+      inputs_.walls.empty()
+          ? settled.model.solids(settled.state.points)
+          : forward::boundary_of(inputs_, settled.model, settled.state.points));
 }
 
 namespace {

@@ -15,6 +15,7 @@
 #include "io/obj.h"
 #include "io/stl.h"
 #include "io/three_mf.h"
+#include "pipeline/case_data/case_symmetry.h"
 #include "pipeline/forward/walls.h"
 #include "pipeline/results/calculix_export.h"
 #include "pipeline/results/export_job.h"
@@ -23,6 +24,7 @@
 #include "pipeline/results/results.h"
 #include "pipeline/results/run_files.h"
 #include "pipeline/study/ledger.h"
+#include "pipeline/whole/whole_part.h"
 
 namespace meniscus::results {
 
@@ -32,11 +34,13 @@ namespace fs = std::filesystem;
 
 void stl(ExportJob& job, const fs::path& file) {
   const SettledFilm& film = job.film();
-  io::write_stl(
-      file, forward::boundary_of(job.inputs(), film.model, film.state.points),
-      {.name = job.input().title,
-       .unit = job.input().units.length,
-       .program = job.notes().program});
+  io::write_stl(file,
+                whole::whole_surface(
+                    job.input(), forward::boundary_of(job.inputs(), film.model,
+                                                      film.state.points)),
+                {.name = job.input().title,
+                 .unit = job.input().units.length,
+                 .program = job.notes().program});
 }
 
 void three_mf(ExportJob& job, const fs::path& file) {
@@ -77,6 +81,22 @@ void wall_step(ExportJob& job, const fs::path& file, bool faceted) {
       {.name = job.input().title, .unit = job.input().units.length});
 }
 
+std::vector<step::MirrorPlane> mirrors_of(const case_data::Case& input) {
+  std::vector<step::MirrorPlane> mirrors;
+  for (const case_data::SymmetryPlane& plane : input.symmetry) {
+    mirrors.push_back({plane.at, plane.normal, {}});
+  }
+  for (const case_data::CapEntry& cap : input.caps) {
+    if (cap.symmetry >= 0) {
+      std::vector<std::string>& cuts =
+          mirrors[static_cast<std::size_t>(cap.symmetry)].cuts;
+      cuts.push_back(cap.spec.name);
+      cuts.push_back(case_data::image_name(cap.spec.name));
+    }
+  }
+  return mirrors;
+}
+
 void step(ExportJob& job, const fs::path& file, bool faceted) {
   if (!job.inputs().walls.empty()) {
     wall_step(job, file, faceted);
@@ -87,6 +107,7 @@ void step(ExportJob& job, const fs::path& file, bool faceted) {
                .unit = job.input().units.length,
                .edge = job.edge().value_or(job.input().resolution.film),
                .faceted = faceted,
+               .mirrors = mirrors_of(job.input()),
                .monitor = job.monitor()});
 }
 

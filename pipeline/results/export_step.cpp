@@ -13,6 +13,7 @@
 #include "core/error.h"
 #include "evolve/films/solid_frame.h"
 #include "evolve/frozen/film_model.h"
+#include "pipeline/case_data/case_symmetry.h"
 #include "pipeline/results/rim_pieces.h"
 
 namespace meniscus::results {
@@ -281,6 +282,13 @@ void tell(const StepExport& options, const solid::FilmSolid& solid,
                                     film.break_place[1], film.break_place[2])));
 }
 
+solid::Brep whole_solid(solid::Brep brep, const StepExport& options) {
+  for (const step::MirrorPlane& plane : options.mirrors) {
+    brep = step::with_mirror_image(brep, plane, case_data::image_name);
+  }
+  return brep;
+}
+
 }  // namespace
 
 void export_step(const std::filesystem::path& file,
@@ -289,7 +297,8 @@ void export_step(const std::filesystem::path& file,
   SurfaceMesh mesh = model.boundary(model.reference().points);
   const step::StepOptions names{.name = options.title, .unit = options.unit};
   if (options.faceted) {
-    step::write_step(file, solid::faceted_solid(mesh), names);
+    step::write_step(file, whole_solid(solid::faceted_solid(mesh), options),
+                     names);
     return;
   }
   const films::FilmSystem held = held_where_it_slid(system, model);
@@ -310,6 +319,7 @@ void export_step(const std::filesystem::path& file,
   }
   solid::FilmSolid solid = solid::film_solid(input);
   solid.brep.exact = exact_faces_of(system);
+  solid.brep = whole_solid(std::move(solid.brep), options);
   tell(options, solid, step::write_step(file, solid.brep, names));
 }
 

@@ -3,18 +3,21 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
+#include "cad/step/mirror_brep.h"
 #include "core/monitor.h"
 #include "evolve/films/film_system.h"
 
 namespace meniscus::results {
 
 struct StepExport {
-  std::string title;           // of the part
-  std::string unit = "mm";     // of lengths
-  double edge = 0.0;           // the film is settled at this edge [length], > 0
-  bool faceted = false;        // every facet a plane, for want of better
-  Monitor* monitor = nullptr;  // hears what was measured
+  std::string title;        // of the part
+  std::string unit = "mm";  // of lengths
+  double edge = 0.0;        // the film is settled at this edge [length], > 0
+  bool faceted = false;     // every facet a plane, for want of better
+  std::vector<step::MirrorPlane> mirrors = {};  // of a part that is drawn
+  Monitor* monitor = nullptr;                   // hears what was measured
 };
 
 /// Settles the films of `system` and writes them as a closed solid: films as

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <optional>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -13,6 +14,7 @@
 #include "io/stl.h"
 #include "io/vtk_files.h"
 #include "pipeline/accuracy/mesh_errors.h"
+#include "pipeline/case_data/case_symmetry.h"
 #include "pipeline/case_data/composed_responses.h"
 #include "pipeline/files/place_json.h"
 #include "pipeline/forward/figures_json.h"
@@ -23,6 +25,7 @@
 #include "pipeline/store/refreeze.h"
 #include "pipeline/store/stored_case.h"
 #include "pipeline/store/study_table.h"
+#include "pipeline/whole/whole_part.h"
 
 namespace meniscus::results {
 
@@ -137,6 +140,16 @@ Json parameters_json(const case_data::Case& input, const VectorX& design) {
   return json;
 }
 
+Json symmetry_json(const case_data::Case& input) {
+  Json json = {{"parts", case_data::symmetric_parts(input)},
+               {"planes", Json::array()}};
+  for (const case_data::SymmetryPlane& plane : input.symmetry) {
+    json["planes"].push_back({{"at", files::place_json(plane.at)},
+                              {"normal", files::place_json(plane.normal)}});
+  }
+  return json;
+}
+
 Json coarse_json(const case_data::Case& input,
                  const study::CoarseFigures& coarse) {
   const bool answered = coarse.design.size() > 0;
@@ -211,6 +224,9 @@ nlohmann::ordered_json result_json(const case_data::Case& input,
   json["case_hash"] = input.hash;
   json["program_version"] = program_version;
   json["units"] = forward::units_json(input.units);
+  if (!input.symmetry.empty()) {
+    json["symmetry"] = symmetry_json(input);
+  }
   json["status"] = study::name_of(result.status);
   json["message"] = result.message;
   const forward::Evaluation* best = result.best ? &*result.best : nullptr;
@@ -314,23 +330,29 @@ void write_film(const case_data::Case& input, const SurfaceMesh& film,
                 const std::filesystem::path& folder) {
   io::MeshFields fields;
   fields.notes = {{"title", input.title}, {"length_unit", input.units.length}};
-  io::write_vtp(folder / "film.vtp", film, fields);
+  io::write_vtp(folder / "film.vtp", whole::whole_surface(input, film), fields);
 }
 
 void write_part(const std::filesystem::path& file, const case_data::Case& input,
                 const forward::EvaluationFields& fields,
                 const std::vector<std::pair<std::string, std::string>>& notes) {
-  io::MeshFields part = part_fields(input, fields);
+  const std::optional<forward::EvaluationFields> whole =
+      whole::whole_part(input, fields);
+  const forward::EvaluationFields& shown = whole ? *whole : fields;
+  io::MeshFields part = part_fields(input, shown);
   part.notes.insert(part.notes.end(), notes.begin(), notes.end());
-  io::write_vtu(file, fields.mesh, part);
+  io::write_vtu(file, shown.mesh, part);
 }
 
 void write_part_surface(const std::filesystem::path& file,
                         const case_data::Case& input,
                         const forward::EvaluationFields& fields,
                         const std::string& load_case) {
-  io::write_boundary_vtp(file, fields.mesh,
-                         part_fields(input, fields, load_case));
+  const std::optional<forward::EvaluationFields> whole =
+      whole::whole_part(input, fields);
+  const forward::EvaluationFields& shown = whole ? *whole : fields;
+  io::write_boundary_vtp(file, shown.mesh,
+                         part_fields(input, shown, load_case));
 }
 
 std::vector<std::string> mesh_names(const case_data::Case& input) {
@@ -352,12 +374,15 @@ std::vector<std::string> write_meshes(const case_data::Case& input,
   const Heeding heeding(&monitor);
   std::vector<std::string> warnings;
   claim_files(folder, mesh_names(input));
-  const io::MeshFields part = part_fields(input, fields);
   write_film(input, fields.film, folder);
-  io::write_vtu(folder / "part.vtu", fields.mesh, part);
-  io::write_boundary_vtp(folder / "part_surface.vtp", fields.mesh, part);
+  const std::optional<forward::EvaluationFields> whole =
+      whole::whole_part(input, fields);
+  const forward::EvaluationFields& shown = whole ? *whole : fields;
+  const io::MeshFields part = part_fields(input, shown);
+  io::write_vtu(folder / "part.vtu", shown.mesh, part);
+  io::write_boundary_vtp(folder / "part_surface.vtp", shown.mesh, part);
   const auto write_part_stl = [&](const SurfaceMesh& mesh, double edge) {
-    io::write_stl(folder / stl_name(edge), mesh,
+    io::write_stl(folder / stl_name(edge), whole::whole_surface(input, mesh),
                   {.name = input.title, .unit = input.units.length});
   };
   if (input.resolution.export_edges.empty()) {

@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 #include "core/timer.h"
+#include "pipeline/case_data/case_symmetry.h"
 #include "pipeline/frames/film_frames.h"
 #include "pipeline/results/export_part.h"
 #include "pipeline/results/make_ledger.h"
@@ -92,12 +93,9 @@ void RunOutput::show_failed_film(const forward::EvaluationFields& fields,
     result.warnings.emplace_back("look at the film in film.vtp");
     return;
   }
-  std::vector<std::string> solids;
-  for (const case_data::CapEntry& cap : input_.caps) {
-    solids.push_back(cap.spec.name);
-  }
   for (std::string& warning :
-       draw_film(input_.title, solids, {}, folder_, monitor_)) {
+       draw_film(input_.title, case_data::solids_of_whole(input_), {}, folder_,
+                 monitor_)) {
     result.warnings.push_back(std::move(warning));
   }
   result.warnings.emplace_back("look at the film in film.png");

@@ -9,9 +9,11 @@
 #include <fmt/format.h>
 
 #include "io/vtk_files.h"
+#include "pipeline/case_data/case_symmetry.h"
 #include "pipeline/case_data/response_entries.h"
 #include "pipeline/forward/stress_figures.h"
 #include "pipeline/frames/film_frames.h"
+#include "pipeline/whole/whole_part.h"
 #include "report/picture/picture.h"
 
 namespace meniscus::output {
@@ -81,8 +83,13 @@ std::string pin_label(const loads::RigidPin& pin) {
   return label;
 }
 
-void add_supports(const loads::LoadCase& load_case, picture::PictureJob& job) {
+void add_supports(const case_data::Case& input,
+                  const loads::LoadCase& load_case, picture::PictureJob& job) {
+  const std::vector<std::string> cut = case_data::cut_faces(input);
   for (const loads::Support& support : load_case.supports) {
+    if (std::ranges::find(cut, support.surface) != cut.end()) {
+      continue;  // within the whole
+    }
     job.supports.push_back(support.surface);
     job.support_labels.push_back(support_label(support));
   }
@@ -156,14 +163,11 @@ void add_body_loads(const loads::LoadCase& load_case,
 }
 
 /// What all have in common; the shapes are the caller's.
-picture::PictureJob run_job(const case_data::Case& input,
-                            const case_data::EvaluatedCase& numbers) {
+picture::PictureJob run_job(const case_data::Case& input) {
   picture::PictureJob job;
   job.title = input.title;
   job.length_unit = input.units.length;
-  for (const films::CapSpec& cap : numbers.film_system.caps) {
-    job.solids.push_back(cap.name);
-  }
+  job.solids = case_data::solids_of_whole(input);
   return job;
 }
 
@@ -179,7 +183,7 @@ picture::PictureJob of_load_case(picture::PictureJob job,
   job.load_case =
       fmt::format("'{}'{}{}", load_case.name,
                   from_any ? ", from its worst direction" : "", remark);
-  add_supports(load_case, job);
+  add_supports(input, load_case, job);
   add_forces(load_case, input.units, job);
   add_body_loads(load_case, job);
   return job;
@@ -274,9 +278,12 @@ picture::PictureTets corner_tets(const TetMesh& mesh) {
 }  // namespace
 
 std::vector<picture::PictureJob> run_pictures(
-    const case_data::Case& input, const forward::EvaluationFields& fields,
+    const case_data::Case& input, const forward::EvaluationFields& drawn,
     const fs::path& folder) {
-  picture::PictureJob job = run_job(input, fields.inputs);
+  const std::optional<forward::EvaluationFields> whole =
+      whole::whole_part(input, drawn);
+  const forward::EvaluationFields& fields = whole ? *whole : drawn;
+  picture::PictureJob job = run_job(input);
   picture::PictureSurface film;
   film.mesh = fields.film;
   job.film.data =
@@ -299,7 +306,7 @@ std::vector<picture::PictureJob> run_pictures(
 std::vector<picture::PictureJob> stored_run_pictures(
     const case_data::Case& input, const case_data::EvaluatedCase& numbers,
     const std::string& worst, const fs::path& folder) {
-  picture::PictureJob job = run_job(input, numbers);
+  picture::PictureJob job = run_job(input);
   job.part.file = (folder / "part.vtu").string();
   job.part_surface.file = (folder / "part_surface.vtp").string();
   job.film.file = (folder / "film.vtp").string();

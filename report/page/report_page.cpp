@@ -9,6 +9,7 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/json.h"
+#include "pipeline/case_data/case_symmetry.h"
 #include "pipeline/forward/worst_cases.h"
 #include "pipeline/store/stored_case.h"
 #include "report/page/page_case.h"
@@ -125,15 +126,6 @@ std::optional<StoredRun> stored_run(const fs::path& folder, const Json& result,
   return run;
 }
 
-std::vector<std::string> solids_of(const case_data::Case& input) {
-  std::vector<std::string> names;
-  names.reserve(input.caps.size());
-  for (const case_data::CapEntry& cap : input.caps) {
-    names.push_back(cap.spec.name);
-  }
-  return names;
-}
-
 /// Adds `parts` with one mesh when the run has one.
 void add_part(const fs::path& folder, const std::string& name,
               const std::vector<element::Material>& materials, double bytes,
@@ -188,7 +180,7 @@ void add_run(const fs::path& folder, Room room, Json& page) {
   const auto run = stored_run(folder, page["result"], notes);
   std::vector<std::string> solids;
   if (run) {
-    solids = solids_of(run->input);
+    solids = case_data::solids_of_whole(run->input);
     page["case"] = page_case(run->input);
     page["curves"] = page_curves(run->input, run->design);
     case_data::EvaluatedCase inputs =

@@ -1,0 +1,383 @@
+#include "pipeline/case_data/case_symmetry.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "pipeline/case_data/case_curves.h"
+
+namespace meniscus::case_data {
+
+namespace {
+
+constexpr std::size_t kMostPlanes = 3;
+constexpr double kRightAngles = 1e-9;  // cosine of directions given as numbers
+constexpr double kQuarterTurn = std::numbers::pi / 2.0;
+
+bool names(const std::vector<std::string>& list, const std::string& name) {
+  return std::find(list.begin(), list.end(), name) != list.end();
+}
+
+/// At the initial design; empty where they have no numbers, which is told
+/// later.
+std::vector<curves::Curve> initial_curves(const Case& input) {
+  std::vector<std::string> found;
+  try {
+    const CaseValues values(input, initial_design(input), found);
+    std::vector<curves::Curve> curves = curves_of(input, values);
+    return found.empty() ? curves : std::vector<curves::Curve>();
+  } catch (const Error&) {
+    return {};
+  }
+}
+
+QuantityVector constants(const Vec3& vector, const char* key, SourceLine line) {
+  QuantityVector result;
+  for (std::size_t k = 0; k < 3; ++k) {
+    result[k] = {.expression = Expression(vector[static_cast<Eigen::Index>(k)]),
+                 .line = line,
+                 .key = fmt::format("symmetry.planes.{}[{}]", key, "xyz"[k])};
+  }
+  return result;
+}
+
+/// The face that a plane cuts of a body, at these curves.
+CapEntry cut_face(const Case& input, const std::string& body, int plane,
+                  const std::vector<std::string>& curves) {
+  const SymmetryPlane& at = input.symmetry[static_cast<std::size_t>(plane)];
+  CapEntry face{.spec = {.name = fmt::format("{}/symmetry_{}", body, plane + 1),
+                         .curve = curves.front()},
+                .symmetry = plane,
+                .line = at.line};
+  face.spec.more.assign(curves.begin() + 1, curves.end());
+  face.wetted =
+      WettedWall{.at = constants(at.at, "at", at.line),
+                 .normal = constants(at.normal, "normal", at.line),
+                 .contact_angle = {.expression = Expression(kQuarterTurn),
+                                   .line = at.line,
+                                   .key = "symmetry.planes"}};
+  return face;
+}
+
+/// Those of a body's films that a plane holds and no solid of the case closes.
+std::vector<std::string> open_in_plane(const Case& input, const BodyEntry& body,
+                                       const std::set<std::string>& in_plane) {
+  std::vector<std::string> result;
+  const auto closed = [&](const std::string& curve) {
+    return std::any_of(input.caps.begin(), input.caps.end(),
+                       [&](const CapEntry& cap) {
+                         return !(cap.wetted && cap.symmetry >= 0) &&
+                                names(cap.spec.curves(), curve);
+                       });
+  };
+  for (const FilmEntry& film : input.films) {
+    if (!names(body.enclosed_by, film.spec.name)) {
+      continue;
+    }
+    for (const std::string& curve : film.spec.curves) {
+      if (in_plane.contains(curve) && !names(result, curve) && !closed(curve)) {
+        result.push_back(curve);
+      }
+    }
+  }
+  return result;
+}
+
+void add_faces(Case& input, int plane, const std::set<std::string>& in_plane,
+               CaseProblems& problems) {
+  std::map<std::string, std::string> body_at;
+  for (BodyEntry& body : input.bodies) {
+    const std::vector<std::string> curves =
+        open_in_plane(input, body, in_plane);
+    for (const std::string& curve : curves) {
+      const auto [other, is_new] = body_at.emplace(curve, body.name);
+      if (!is_new) {
+        problems.add(
+            input.symmetry[static_cast<std::size_t>(plane)].line,
+            fmt::format("curve '{}' lies in plane {} of symmetry and bounds "
+                        "bodies '{}' and '{}'; a film that slides there is of "
+                        "one body: let one body end elsewhere, or close both "
+                        "with solids of the case",
+                        curve, plane + 1, other->second, body.name));
+        return;
+      }
+    }
+    if (!curves.empty()) {
+      input.caps.push_back(cut_face(input, body.name, plane, curves));
+      body.enclosed_by.push_back(input.caps.back().spec.name);
+    }
+  }
+}
+
+}  // namespace
+
+int symmetric_parts(const Case& input) {
+  return 1 << static_cast<int>(input.symmetry.size());
+}
+
+std::vector<std::string> cut_faces(const Case& input) {
+  std::vector<std::string> result;
+  for (const CapEntry& cap : input.caps) {
+    if (cap.symmetry >= 0) {
+      result.push_back(cap.spec.name);
+    }
+  }
+  return result;
+}
+
+std::string image_name(const std::string& surface) {
+  constexpr const char* kImage = "/image";
+  return surface.ends_with(kImage) ? surface : surface + kImage;
+}
+
+std::vector<std::string> solids_of_whole(const Case& input) {
+  std::vector<std::string> result;
+  for (const CapEntry& cap : input.caps) {
+    result.push_back(cap.spec.name);
+  }
+  if (!input.symmetry.empty()) {
+    const std::vector<std::string> drawn = result;
+    for (const std::string& name : drawn) {
+      result.push_back(image_name(name));
+    }
+  }
+  return result;
+}
+
+void check_planes(const Case& input, CaseProblems& problems) {
+  const std::vector<SymmetryPlane>& planes = input.symmetry;
+  if (planes.size() > kMostPlanes) {
+    problems.add(planes.back().line,
+                 fmt::format("symmetry has {} planes; expected one to three",
+                             planes.size()));
+    return;
+  }
+  for (std::size_t b = 1; b < planes.size(); ++b) {
+    for (std::size_t a = 0; a < b; ++a) {
+      const double cosine = std::abs(planes[a].normal.dot(planes[b].normal));
+      if (cosine > kRightAngles) {
+        problems.add(
+            planes[b].line,
+            fmt::format(
+                "planes {} and {} of symmetry meet at {:.6g} deg; "
+                "expected 90",
+                a + 1, b + 1,
+                std::acos(std::min(cosine, 1.0)) * 180.0 / std::numbers::pi));
+      }
+    }
+  }
+}
+
+void add_cut_faces(Case& input, CaseProblems& problems) {
+  if (input.symmetry.empty()) {
+    return;
+  }
+  const std::vector<curves::Curve> curves = initial_curves(input);
+  for (std::size_t p = 0; p < input.symmetry.size(); ++p) {
+    const int plane = static_cast<int>(p);
+    std::set<std::string> in_plane;
+    for (const curves::Curve& curve : curves) {
+      if (reach_of(input.symmetry[p], curve).is_in_plane()) {
+        in_plane.insert(curve.name);
+      }
+    }
+    for (CapEntry& cap : input.caps) {
+      const std::vector<std::string> rims = cap.spec.curves();
+      const bool lies = std::all_of(
+          rims.begin(), rims.end(),
+          [&](const std::string& rim) { return in_plane.contains(rim); });
+      if (!rims.empty() && lies && cap.symmetry < 0) {
+        cap.symmetry = plane;
+      }
+    }
+    add_faces(input, plane, in_plane, problems);
+  }
+}
+
+namespace {
+
+/// Faces of solid bodies: those of void ones are not meshed.
+std::vector<std::string> held_faces(const Case& input) {
+  std::vector<std::string> result;
+  for (const std::string& face : cut_faces(input)) {
+    if (std::any_of(input.bodies.begin(), input.bodies.end(),
+                    [&](const BodyEntry& body) {
+                      return body.material != kVoid &&
+                             names(body.enclosed_by, face);
+                    })) {
+      result.push_back(face);
+    }
+  }
+  return result;
+}
+
+/// The first of the surfaces that is a cut face; empty: none.
+std::string cut_among(const std::vector<std::string>& faces,
+                      const loads::Surfaces& surfaces) {
+  const auto at =
+      std::find_if(surfaces.begin(), surfaces.end(),
+                   [&](const auto& surface) { return names(faces, surface); });
+  return at == surfaces.end() ? "" : *at;
+}
+
+void refuse_on_cut(const char* what, const std::string& face, SourceLine line,
+                   CaseProblems& problems) {
+  if (!face.empty()) {
+    problems.add(line, fmt::format("a {} on '{}', which lies in a plane of "
+                                   "symmetry and is held along its normal "
+                                   "alone; take it out",
+                                   what, face));
+  }
+}
+
+void hold(LoadCaseEntry& load_case, const std::vector<std::string>& faces,
+          SourceLine line, CaseProblems& problems) {
+  for (const LoadEntry& load : load_case.loads) {
+    refuse_on_cut("load", cut_among(faces, load.surfaces), load.line, problems);
+    refuse_on_cut("load", cut_among(faces, load.thread), load.line, problems);
+  }
+  for (const loads::SpringBed& bed : load_case.springs) {
+    refuse_on_cut("spring bed", cut_among(faces, bed.surface), load_case.line,
+                  problems);
+  }
+  for (const PinEntry& pin : load_case.pins) {
+    refuse_on_cut("rigid support", cut_among(faces, pin.pin.surfaces), pin.line,
+                  problems);
+  }
+  std::vector<std::string> held;
+  for (const SupportEntry& entry : load_case.supports) {
+    if (entry.support.kind == loads::SupportKind::Symmetry) {
+      held.push_back(entry.support.surface);
+    } else {
+      refuse_on_cut("support", cut_among(faces, entry.support.surface),
+                    entry.line, problems);
+    }
+  }
+  for (const std::string& face : faces) {
+    if (!names(held, face)) {
+      load_case.supports.push_back(
+          {.support = {.surface = face, .kind = loads::SupportKind::Symmetry},
+           .displacement = std::nullopt,
+           .line = line});
+    }
+  }
+}
+
+/// What is the sum over all parts of the whole.
+bool adds_up(ResponseKind kind) {
+  switch (kind) {
+    case ResponseKind::Compliance:
+    case ResponseKind::StrainEnergy:
+    case ResponseKind::Mass:
+    case ResponseKind::Volume:
+    case ResponseKind::Inertia:
+    case ResponseKind::FilmArea:
+    case ResponseKind::FilmEnergy:
+    case ResponseKind::Overhang:
+    case ResponseKind::Draft:
+      return true;
+    default:
+      return false;
+  }
+}
+
+void apply_to(ResponseEntry& response, const std::vector<std::string>& cut,
+              int parts, CaseProblems& problems) {
+  const auto refuse = [&](const char* why) {
+    problems.add(response.line,
+                 fmt::format("responses.{}: {}", response.name, why));
+  };
+  if (adds_up(response.kind)) {
+    response.images = parts;
+  }
+  if (response.kind == ResponseKind::Thickness) {
+    refuse(
+        "thickness is from face to face, and a plane of symmetry is no "
+        "face; ask it of a case without [symmetry]");
+  }
+  if (response.kind == ResponseKind::Draft &&
+      (response.surface.empty() || names(cut, response.surface))) {
+    refuse(
+        "with [symmetry], draft needs 'on', a surface that lies in no plane "
+        "of it");
+  }
+  if (response.kind == ResponseKind::Overhang) {
+    response.base.insert(response.base.end(), cut.begin(), cut.end());
+  }
+}
+
+bool asks_for_modes(const Case& input) {
+  return input.analysis.frequencies > 0 ||
+         input.analysis.buckling.value_or(1) > 0 ||
+         std::any_of(input.responses.begin(), input.responses.end(),
+                     [](const ResponseEntry& r) {
+                       return r.kind == ResponseKind::Frequency ||
+                              r.kind == ResponseKind::BucklingFactor;
+                     });
+}
+
+bool asks_for_free_part(const Case& input) {
+  return input.analysis.supports_of == AnalysisEntry::kFree ||
+         std::any_of(input.responses.begin(), input.responses.end(),
+                     [](const ResponseEntry& r) {
+                       return r.kind == ResponseKind::Frequency &&
+                              r.load_case == AnalysisEntry::kFree;
+                     });
+}
+
+}  // namespace
+
+void apply_symmetry(Case& input, CaseProblems& problems) {
+  if (input.symmetry.empty() || !problems.empty()) {
+    return;
+  }
+  const SourceLine line = input.symmetry.front().line;
+  const std::vector<std::string> faces = held_faces(input);
+  if (faces.empty()) {
+    problems.add(line,
+                 "no body ends in a plane of symmetry: let films end at a "
+                 "closed curve in it, or give it a solid that lies in it");
+  }
+  for (LoadCaseEntry& load_case : input.load_cases) {
+    hold(load_case, faces, line, problems);
+    for (const LoadEntry& load : load_case.loads) {
+      if (load.size) {
+        problems.add(load.line,
+                     "a load of given 'size' comes from one direction, and "
+                     "with [symmetry] its images act with it; give a 'force'");
+      }
+    }
+  }
+  for (ResponseEntry& response : input.responses) {
+    apply_to(response, faces, symmetric_parts(input), problems);
+  }
+  const auto refuse = [&](SourceLine at, const std::string& what) {
+    problems.add(at, what + " cannot be with [symmetry] yet; draw the whole");
+  };
+  if (!input.walls.empty()) {
+    refuse(input.walls.front().line, "walls");
+  }
+  if (!input.step_solids.empty()) {
+    refuse(input.step_solids.front().line, "solids of STEP files");
+  }
+  if (asks_for_free_part(input)) {
+    refuse(line, "a part that is free");
+  }
+  if (input.process.smallest_feature > 0.0) {
+    refuse(line, "process.smallest_feature, which is from face to face,");
+  }
+  problems.warn(
+      line, fmt::format("the films{} are judged for motions that are symmetric "
+                        "too; a whole may be unstable where its part is not: "
+                        "check the answer once without [symmetry]",
+                        asks_for_modes(input)
+                            ? ", buckling factors and natural frequencies"
+                            : ""));
+}
+
+}  // namespace meniscus::case_data

@@ -1,0 +1,62 @@
+/// Parts of which the case draws a half, a quarter or an eighth: the rest is
+/// its image in [symmetry]'s planes.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "evolve/curves/curve.h"
+#include "pipeline/case_data/case_problems.h"
+#include "pipeline/case_data/case_values.h"
+
+namespace meniscus::case_data {
+
+/// Of how many parts like the drawn one the whole is: 1, 2, 4 or 8.
+int symmetric_parts(const Case& input);
+
+/// Notes planes that are too many, or not at right angles to each other.
+void check_planes(const Case& input, CaseProblems& problems);
+
+/// After the bodies, before they are checked: finds the solids that lie in a
+/// plane (CapEntry::symmetry), and closes each body whose films end there by a
+/// wetted face BODY/symmetry_1 (of the first plane) at 90 degrees.
+void add_cut_faces(Case& input, CaseProblems& problems);
+
+/// After the responses: holds the cut faces in every load case, notes loads,
+/// supports and responses that a half cannot have, and sets
+/// ResponseEntry::images.
+void apply_symmetry(Case& input, CaseProblems& problems);
+
+/// Tells of curves and facets beyond a plane or across it, and of loads and
+/// axes that are not their own images, at one design.
+void check_symmetry(const Case& input, const EvaluatedCase& inputs,
+                    const CaseValues& values);
+
+/// The names of the cut faces, in the order of the solids.
+std::vector<std::string> cut_faces(const Case& input);
+
+/// What the images of a surface are called: "pad/image"; those of images
+/// likewise.
+std::string image_name(const std::string& surface);
+
+/// The solids of the case and, with planes of symmetry, their images.
+std::vector<std::string> solids_of_whole(const Case& input);
+
+/// Distance from the plane, above 0 where its normal points to [length].
+inline double beyond(const SymmetryPlane& plane, const Vec3& point) {
+  return plane.normal.dot(point - plane.at);
+}
+
+/// How far points lie beyond a plane [length].
+struct Reach {
+  double least = 0.0;
+  double most = 0.0;
+  Vec3 farthest = Vec3::Zero();  // where it is `most`
+  double rounding = 0.0;         // what counts as 0
+
+  bool is_in_plane() const { return most <= rounding && least >= -rounding; }
+};
+
+Reach reach_of(const SymmetryPlane& plane, const curves::Curve& curve);
+
+}  // namespace meniscus::case_data

@@ -1,0 +1,179 @@
+// Cases that draw a half, a quarter or an eighth of a part.
+#include "pipeline/case_data/case_symmetry.h"
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/case_text.h"
+
+namespace meniscus::case_symmetry_test {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr const char* kPlane = "{ at = [0, 0, 0], normal = [0, 0, -1] }";
+
+/// The strut's upper half, whose film begins on its base and slides there.
+std::string half(const std::string& planes = kPlane) {
+  std::string text =
+      changed(strut(), "[curves.base]",
+              "[symmetry]\nplanes = [" + planes + "]\n\n[curves.base]");
+  text = changed(text, "[solids.foot_pad]\nkind = \"cap\"\ncurve = \"base\"\n",
+                 "");
+  text = changed(text, "\"skin\", \"foot_pad\"", "\"skin\"");
+  text = changed(text, "{ on = \"foot_pad\", fix = \"xyz\" }",
+                 "{ on = \"head_pad\", fix = \"xy\" }");
+  text = changed(text, "[\"load\", 0, 0]", "[0, 0, \"load\"]");
+  text = changed(text, "direction = [1, 0, 0]", "direction = [0, 0, 1]");
+  return changed(text, "sway = 0.01", "sway = 0.01, mass = 1e-4") +
+         "[analysis]\nbuckling = 0\n";
+}
+
+TEST(CaseSymmetry, ClosesAndHoldsWhatEndsInThePlane) {
+  const case_data::Case input = case_of(half());
+  EXPECT_EQ(case_data::symmetric_parts(input), 2);
+  EXPECT_THAT(case_data::cut_faces(input), ElementsAre("part/symmetry_1"));
+  EXPECT_THAT(input.bodies[0].enclosed_by,
+              ElementsAre("skin", "head_pad", "part/symmetry_1"));
+  const auto inputs =
+      case_data::evaluate(input, case_data::initial_design(input));
+  const auto& supports = inputs.load_cases[0].supports;
+  ASSERT_EQ(supports.size(), 2U);
+  EXPECT_EQ(supports[1].surface, "part/symmetry_1");
+  EXPECT_EQ(supports[1].kind, loads::SupportKind::Symmetry);
+  const auto& cap = inputs.film_system.caps.back();
+  ASSERT_TRUE(cap.wall.has_value());
+  EXPECT_NEAR(cap.wall->tension, 0.0, 1e-15);
+  EXPECT_EQ(input.responses[0].images, 1);
+  EXPECT_EQ(input.responses[1].images, 2);
+}
+
+TEST(CaseSymmetry, ASolidOfTheCaseInThePlaneIsACutFaceToo) {
+  const case_data::Case input = case_of(
+      changed(changed(half(), "[\"skin\", ", "[\"skin\", \"foot_pad\", "),
+              "[solids.head_pad]",
+              "[solids.foot_pad]\nkind = \"cap\"\ncurve = \"base\"\n\n"
+              "[solids.head_pad]"));
+  EXPECT_THAT(case_data::cut_faces(input), ElementsAre("foot_pad"));
+  EXPECT_THAT(input.bodies[0].enclosed_by,
+              ElementsAre("skin", "foot_pad", "head_pad"));
+}
+
+TEST(CaseSymmetry, WarnsOfMotionsThatAreNotSymmetric) {
+  const auto warnings = reader::read_case_text(half(), "case.toml").warnings;
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_THAT(warnings[0], HasSubstr("case.toml:13: warning: the films are "
+                                     "judged for motions that are symmetric"));
+}
+
+void expect_problem(const std::string& text, const std::string& message) {
+  const std::vector<std::string> problems = problems_of(text);
+  ASSERT_FALSE(problems.empty()) << message;
+  EXPECT_THAT(problems[0], HasSubstr(message));
+}
+
+TEST(CaseSymmetry, PlanesThatAreNoneAreToldWithTheirLines) {
+  EXPECT_THAT(problems_of(half()), IsEmpty());
+  expect_problem(half("{ at = [0, 0, 0], normal = [0, 0, 0] }"),
+                 "case.toml:13: symmetry.planes: normal is 0");
+  expect_problem(
+      half(std::string(kPlane) + ", { at = [30, 0, 0], normal = [1, 0, 1] }"),
+      "case.toml:13: planes 1 and 2 of symmetry meet at 45 deg; expected 90");
+  expect_problem(half("{ at = [0, 0, 0] }"), "case.toml:13: ");
+  expect_problem(
+      half(std::string(kPlane) + ", { at = [99, 0, 0], normal = [1, 0, 0] }, "
+                                 "{ at = [0, 99, 0], normal = [0, 1, 0] }, "
+                                 "{ at = [0, 99, 0], normal = [0, 1, 0] }"),
+      "symmetry has 4 planes; expected one to three");
+}
+
+TEST(CaseSymmetry, CurvesBeyondAPlaneAreToldWithTheirLines) {
+  // The other side, across, and a rim that only touches it.
+  expect_problem(half("{ at = [0, 0, 0], normal = [0, 0, 1] }"),
+                 "case.toml:21: curve 'head' is 60 beyond plane 1");
+  expect_problem(
+      half(std::string(kPlane) + ", { at = [0, 0, 0], normal = [1, 0, 0] }"),
+      "case.toml:15: curve 'base' is 25 beyond plane 2 of symmetry "
+      "at (25, ");
+  expect_problem(
+      half(std::string(kPlane) + ", { at = [25, 0, 0], normal = [1, 0, 0] }"),
+      "case.toml:15: curve 'base', which holds a film, touches plane "
+      "2");
+  expect_problem(changed(half(), "center = [0, 0, 0]",
+                         "center = [0, 0, \"(foot - 25) / 10\"]"),
+                 "with 'foot' at the end of its bounds");
+  expect_problem(half("{ at = [0, 0, -9], normal = [0, 0, -1] }"),
+                 "body 'part' is not closed at curve 'base'");
+}
+
+TEST(CaseSymmetry, WhatIsNotSymmetricIsTold) {
+  const std::string load = "loads = [";
+  const auto loaded = [&](const std::string& more) {
+    return changed(half(), load, load + more + ", ");
+  };
+  expect_problem(loaded("{ on = \"part/symmetry_1\", pressure = 1 }"),
+                 "a load on 'part/symmetry_1', which lies in a plane of "
+                 "symmetry");
+  expect_problem(changed(half(), "supports = [",
+                         "supports = [{ on = \"part/symmetry_1\", fix = "
+                         "\"x\" }, "),
+                 "a support on 'part/symmetry_1'");
+  expect_problem(loaded("{ gravity = [0, 0, -9810] }"),
+                 "gravity across plane 1 of symmetry");
+  EXPECT_THAT(problems_of(loaded("{ gravity = [0, -9810, 0] }")), IsEmpty());
+  expect_problem(loaded("{ spin = 3, axis = [1, 0, 0], at = [0, 0, 9] }"),
+                 "a spin about an axis that is not symmetric about plane 1");
+  EXPECT_THAT(
+      problems_of(loaded("{ spin = 3, axis = [1, 0, 0], at = [9, 0, 0] }")),
+      IsEmpty());
+  EXPECT_THAT(
+      problems_of(loaded("{ spin = 3, axis = [0, 0, 1], at = [9, 0, 9] }")),
+      IsEmpty());
+  expect_problem(changed(half(), "force = [0, 0, \"load\"]",
+                         "size = \"load\", at = [0, 0, 60]"),
+                 "a load of given 'size'");
+}
+
+TEST(CaseSymmetry, ResponsesThatAHalfHasNotAreTold) {
+  const auto asked = [](const std::string& response) {
+    return changed(half(), "[study]",
+                   "[responses.more]\n" + response + "\n\n[study]");
+  };
+  for (const char* bad :
+       {"kind = \"centre_of_mass\"\ndirection = [0, 0, 1]",
+        "kind = \"inertia\"\naxis = [1, 0, 0]",
+        "kind = \"inertia\"\naxis = [1, 0, 0]\nthrough = [0, 0, 30]",
+        "kind = \"inertia\"\naxis = [1, 0, 1]",
+        "kind = \"overhang\"\ndirection = [0, 0, 1]",
+        "kind = \"draft\"\non = \"skin\"\ndirection = [1, 0, 1]"}) {
+    expect_problem(asked(bad),
+                   "responses.more is of the whole, and its "
+                   "direction is not symmetric about plane 1");
+  }
+  for (const char* good :
+       {"kind = \"centre_of_mass\"\ndirection = [0, 1, 0]",
+        "kind = \"inertia\"\naxis = [0, 0, 1]",
+        "kind = \"inertia\"\naxis = [1, 0, 0]\nthrough = [0, 0, 0]",
+        "kind = \"overhang\"\ndirection = [0, 1, 0]",
+        "kind = \"draft\"\non = \"skin\"\ndirection = [1, 0, 0]"}) {
+    EXPECT_THAT(problems_of(asked(good)), IsEmpty()) << good;
+  }
+  expect_problem(asked("kind = \"thickness\""),
+                 "thickness is from face to face");
+  expect_problem(asked("kind = \"draft\"\ndirection = [1, 0, 0]"),
+                 "draft needs 'on'");
+  expect_problem(asked("kind = \"frequency\"\nload_case = \"free\""),
+                 "a part that is free cannot be with [symmetry]");
+  expect_problem(changed(half(), "[resolution]",
+                         "[process]\nsmallest_feature = 3\n\n[resolution]"),
+                 "process.smallest_feature");
+}
+
+}  // namespace
+}  // namespace meniscus::case_symmetry_test
