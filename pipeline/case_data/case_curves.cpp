@@ -176,6 +176,23 @@ std::vector<curves::Curve> curves_of(const Case& input,
   return result;
 }
 
+namespace {
+
+/// The plane face that ends at both curves; empty: none does.
+std::string face_with(const films::FilmSystem& system, const std::string& a,
+                      const std::string& b) {
+  for (const films::CapSpec& cap : system.caps) {
+    const std::vector<std::string>& rims = cap.more;
+    if (std::find(rims.begin(), rims.end(), a) != rims.end() &&
+        std::find(rims.begin(), rims.end(), b) != rims.end()) {
+      return cap.name;
+    }
+  }
+  return "";
+}
+
+}  // namespace
+
 void check_meetings(const Case& input, const films::FilmSystem& system,
                     const CaseValues& values) {
   const films::SharedRims shared(system.curves);
@@ -207,12 +224,18 @@ void check_meetings(const Case& input, const films::FilmSystem& system,
       continue;  // faces that join: check_sides() looks at them
     }
     const Vec3& at = meeting.place;
+    const std::string face =
+        face_with(system, input.curves[a].name, input.curves[b].name);
     values.problems().push_back(fmt::format(
-        "{}: curves '{}' and '{}' meet near ({:.4g}, {:.4g}, {:.4g}){}; films "
-        "join where they name the same curve, other curves must keep apart",
+        "{}: curves '{}' and '{}' meet near ({:.4g}, {:.4g}, {:.4g}){}; {}",
         place(input, input.curves[b].line), input.curves[a].name,
         input.curves[b].name, at.x(), at.y(), at.z(),
-        where(input.curves[b], values)));
+        where(input.curves[b], values),
+        face.empty() ? "films join where they name the same curve, other "
+                       "curves must keep apart"
+                     : fmt::format("these rims of '{}' have merged: keep them "
+                                   "apart, or draw one curve around both",
+                                   face)));
   }
 }
 

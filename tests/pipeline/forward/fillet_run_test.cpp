@@ -1,0 +1,285 @@
+// Fillets through the whole forward model: a rod on a plate, pulled.
+#include <cmath>
+#include <numbers>
+#include <omp.h>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/geometry/mesh_checks.h"
+#include "pipeline/case_data/response_entries.h"
+#include "pipeline/forward/forward_model.h"
+#include "pipeline/forward/gradient_check.h"
+#include "tests/support/case_text.h"
+
+namespace meniscus::fillet_run_test {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr double kRodRadius = 8.0;
+constexpr double kRodPi = std::numbers::pi;
+/// Of the whole volume; the fillet is 2.4 % of it.
+constexpr double kOfVolume = 1e-3;
+
+/// A rod of radius 8 and length 20 on a round plate of radius 24.
+std::string rod() {
+  return R"(title = "A rod on a plate"
+units = "mm-N-MPa"
+
+[design.fillet]
+initial = 3.0
+bounds = [0.0, 6.0]
+
+[design.foot]
+initial = 8.0
+bounds = [6.0, 20.0]
+
+[design.tilt]
+initial = 0.0
+bounds = [-0.2, 0.2]
+
+[curves.foot]
+kind = "circle"
+center = [0, 0, 0]
+normal = [0, 0, 1]
+radius = "foot"
+
+[curves.head]
+kind = "circle"
+center = ["20 * tilt", 0, 20]
+normal = ["tilt", 0, 1]
+radius = 8
+
+[solids.plate]
+kind = "flange"
+at = [0, 0, 0]
+axis = [0, 0, 1]
+radius = 24
+thickness = 5
+curves = ["foot"]
+
+[solids.end]
+kind = "cap"
+curve = "head"
+
+[films.skin]
+kind = "loft"
+curves = ["foot", "head"]
+
+[fillets.root]
+curves = ["foot"]
+radius = "fillet"
+
+[bodies.part]
+enclosed_by = ["skin", "plate", "end"]
+volume = "pi * (8^2 * 20 + 24^2 * 5)"
+material = "steel"
+
+[resolution]
+fea = 4.0
+film = 2.0
+
+[materials.steel]
+youngs_modulus = 210000
+poisson_ratio = 0.3
+density = 1.0
+
+[load_cases.pull]
+supports = [{ on = "plate/bottom", fix = "xyz" }]
+loads = [{ on = "end", force = [0, 0, 20106] }]
+
+[responses.mass]
+kind = "mass"
+
+[responses.stress]
+kind = "von_mises_norm"
+power = 8
+
+[responses.peak]
+kind = "max_von_mises"
+
+[responses.give]
+kind = "compliance"
+
+[study]
+kind = "match"
+targets = { mass = 1.0 }
+)";
+}
+
+/// "case.toml:N: " of the fillet.
+const char* const kFilletLine = "case.toml:44: ";
+
+/// A film in two, from the foot to a waist and on, with a fillet at the waist.
+std::string creased_rod() {
+  std::string text = changed(rod(), "[solids.plate]", R"([curves.waist]
+kind = "circle"
+center = [0, 0, 9]
+normal = [0, 0, 1]
+radius = 6
+
+[solids.plate])");
+  text = changed(text, "curves = [\"foot\", \"head\"]",
+                 "curves = [\"foot\", \"waist\"]\n\n[films.upper]\n"
+                 "kind = \"loft\"\ncurves = [\"waist\", \"head\"]");
+  text = changed(text, "curves = [\"foot\"]\nradius = \"fillet\"",
+                 "curves = [\"waist\"]\nradius = \"fillet\"");
+  return changed(text, "[\"skin\", ", "[\"skin\", \"upper\", ");
+}
+
+Eigen::Vector3d design_of(double fillet, double foot = 8.0, double tilt = 0.0) {
+  return {fillet, foot, tilt};
+}
+
+TEST(FilletRun, WeighsTheRodThePlateAndTheTorusBetween) {
+  const case_data::Case input = case_of(rod());
+  const forward::ForwardModel model(input);
+  ASSERT_FALSE(model.failure()) << model.failure()->message;
+  const int mass = case_data::response_index(input, "mass");
+  const auto exact = [](double r) {
+    const double middle =
+        kRodRadius + r * (10.0 - 3.0 * kRodPi) / (3.0 * (4.0 - kRodPi));
+    return kRodPi * (64.0 * 20.0 + 576.0 * 5.0) +
+           2.0 * kRodPi * middle * (1.0 - kRodPi / 4.0) * r * r;
+  };
+  for (const double r : {3.0, 0.0, 4.0}) {
+    forward::EvaluationFields fields;
+    const forward::Evaluation there = model.evaluate(design_of(r), &fields);
+    ASSERT_FALSE(there.failure) << there.failure->message;
+    EXPECT_NEAR(there.responses[mass] / exact(r), 1.0, kOfVolume) << r;
+    EXPECT_THAT(check_surface(fields.boundary), IsEmpty());
+  }
+}
+
+TEST(FilletRun, HasExactGradientsByRadiusAndAllElse) {
+  const case_data::Case input = case_of(rod());
+  for (const Eigen::Vector3d& design :
+       {design_of(3.0), design_of(3.6, 8.3, 0.05)}) {
+    const forward::CaseGradientCheck check =
+        forward::check_case_gradient(input, design);
+    EXPECT_TRUE(check.report.passed)
+        << forward::gradient_check_text(input, check);
+    EXPECT_THAT(check.left_out, ElementsAre("peak"));
+  }
+}
+
+TEST(FilletRun, RoundsTheCreaseBetweenTwoFilms) {
+  const case_data::Case input = case_of(creased_rod());
+  const forward::CaseGradientCheck check =
+      forward::check_case_gradient(input, case_data::initial_design(input));
+  EXPECT_TRUE(check.report.passed)
+      << forward::gradient_check_text(input, check);
+}
+
+TEST(FilletRun, LowersThePeakAtTheFoot) {
+  std::string text = changed(rod(), "initial = 3.0", "initial = 1.5");
+  const case_data::Case sharp = case_of(text);
+  const case_data::Case round = case_of(rod());
+  const auto peak = [](const case_data::Case& input) {
+    const forward::ForwardModel model(input);
+    const forward::Evaluation there =
+        model.evaluate(case_data::initial_design(input));
+    EXPECT_FALSE(there.failure);
+    return there.responses[case_data::response_index(input, "peak")];
+  };
+  EXPECT_LT(peak(round), 0.95 * peak(sharp));
+}
+
+TEST(FilletRun, IsTheSameForAnyNumberOfThreads) {
+  const case_data::Case input = case_of(rod());
+  const int before = omp_get_max_threads();
+  const auto responses = [&](int count) {
+    omp_set_num_threads(count);
+    const forward::ForwardModel model(input);
+    return model.evaluate(design_of(3.5, 8.2, 0.02)).responses;
+  };
+  EXPECT_EQ(responses(1), responses(2));
+  omp_set_num_threads(before);
+}
+
+TEST(FilletRun, TellsWhatDoesNotFitWithItsLine) {
+  const forward::ForwardModel wide(
+      case_of(changed(rod(), "initial = 8.0", "initial = 19.5")));
+  ASSERT_TRUE(wide.failure());
+  EXPECT_THAT(wide.failure()->message,
+              AllOf(HasSubstr(kFilletLine),
+                    HasSubstr("radius 3 does not fit on 'plate/top'")));
+  const case_data::Case input = case_of(rod());
+  const forward::ForwardModel model(input);
+  const forward::Evaluation large = model.evaluate(design_of(12.0));
+  ASSERT_TRUE(large.failure);
+  EXPECT_THAT(large.failure->message,
+              HasSubstr("a ball of radius 12 does not fit in the corner"));
+}
+
+TEST(FilletRun, RefusesWhatItCannotRound) {
+  const std::string fillet = "curves = [\"foot\"]\nradius = \"fillet\"";
+  EXPECT_THAT(problems_of(changed(rod(), fillet,
+                                  "curves = [\"plate/edge\"]\nradius = 1")),
+              ElementsAre(AllOf(HasSubstr("case.toml:45: "),
+                                HasSubstr("unknown curve of a film"))));
+  EXPECT_THAT(problems_of(changed(rod(), fillet,
+                                  "curves = [\"foot\", \"foot\"]\nradius = 1")),
+              ElementsAre(HasSubstr("a curve has one radius")));
+  EXPECT_THAT(
+      problems_of(changed(rod(), fillet, "curves = [\"foot\"]\nradius = -1")),
+      ElementsAre(HasSubstr("0 or above")));
+}
+
+/// Two rods on the plate, which grow and may move.
+std::string two_rods(const std::string& x) {
+  std::string text = changed(rod(), "[solids.plate]", R"([curves.other]
+kind = "circle"
+center = [)" + x + R"(, 0, 0]
+normal = [0, 0, 1]
+radius = "foot / 4"
+
+[curves.other_head]
+kind = "circle"
+center = [)" + x + R"(, 0, 20]
+normal = [0, 0, 1]
+radius = 2
+
+[films.other]
+kind = "loft"
+curves = ["other", "other_head"]
+
+[solids.other_end]
+kind = "cap"
+curve = "other_head"
+
+[solids.plate])");
+  text = changed(text, "curves = [\"foot\"]\n\n[solids.end]",
+                 "curves = [\"foot\", \"other\"]\n\n[solids.end]");
+  return changed(text, "[\"skin\", ", "[\"skin\", \"other\", \"other_end\", ");
+}
+
+TEST(RimsOfOneFace, TellThatTheyHaveMerged) {
+  const case_data::Case input = case_of(two_rods("17"));
+  const auto problems = [&](double foot) {
+    std::vector<std::string> found;
+    case_data::evaluate(input, design_of(3.0, foot), found);
+    return found;
+  };
+  EXPECT_THAT(problems(9.0), IsEmpty());
+  EXPECT_THAT(problems(15.0),
+              ElementsAre(AllOf(HasSubstr("curves 'foot' and 'other' meet"),
+                                HasSubstr("rims of 'plate/top' have merged"))));
+  // In one step from beside to within.
+  EXPECT_THAT(problems(23.0),
+              ElementsAre(AllOf(HasSubstr("curves 'foot' and 'other', rims of "
+                                          "'plate/top', have merged"),
+                                HasSubstr("'other' lies within 'foot'"))));
+}
+
+TEST(RimsOfOneFace, AreToldInCheckToo) {
+  EXPECT_THAT(problems_of(two_rods("9")),
+              ElementsAre(HasSubstr("rims of 'plate/top' have merged")));
+}
+
+}  // namespace
+}  // namespace meniscus::fillet_run_test
