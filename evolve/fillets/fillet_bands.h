@@ -26,6 +26,8 @@ struct Profile {
   int after = 0;
   std::array<Mean, 3> a = {};  // at 1/3, 2/3 and 1 of the sections' lengths
   std::array<Mean, 3> b = {};
+  double arc_a = 0.0;  // of the sections: what the arc takes [length]
+  double arc_b = 0.0;
   std::vector<Follower> followers = {};
 };
 

@@ -42,11 +42,17 @@ VectorOf<Dual> variable(const Vec3& at, int first) {
 }
 
 template <class T>
-Corner<T> corner_of(const FilletBands& bands,
+Corner<T> corner_of(const FilletBands& bands, const Profile& profile,
                     const std::array<VectorOf<T>, kNodes>& x,
                     const VectorOf<T>& along, const T& radius) {
-  return {.a = {{x[0], x[1], x[2], x[3]}, bands.length_a, bands.out_a},
-          .b = {{x[0], x[4], x[5], x[6]}, bands.length_b, bands.out_b},
+  return {.a = {{x[0], x[1], x[2], x[3]},
+                bands.length_a,
+                bands.out_a,
+                profile.arc_a},
+          .b = {{x[0], x[4], x[5], x[6]},
+                bands.length_b,
+                bands.out_b,
+                profile.arc_b},
           .along = along,
           .radius = radius,
           .share = bands.share};
@@ -58,8 +64,8 @@ Corner<double> corner_at(const FilletBands& bands, const Profile& profile,
   const std::array<Mean, kNodes> nodes = nodes_of(profile);
   std::transform(nodes.begin(), nodes.end(), x.begin(),
                  [&](const Mean& mean) { return at_mean(mean, film); });
-  return corner_of<double>(bands, x, film[profile.after] - film[profile.before],
-                           radius);
+  return corner_of<double>(bands, profile, x,
+                           film[profile.after] - film[profile.before], radius);
 }
 
 Contact contact_at(const FilletBands& bands, const Corner<double>& corner) {
@@ -137,7 +143,15 @@ FilletModel::FilletModel(const SurfaceMesh& surface,
   for (std::size_t k = 0; k < system.fillets.size(); ++k) {
     bands_.push_back(freeze_bands(surface, system, rims, k));
   }
-  rounded(surface.points, system);  // throws where a ball does not fit
+  for (std::size_t k = 0; k < bands_.size(); ++k) {
+    for (Profile& profile : bands_[k].profiles) {
+      const Corner<double> corner = corner_at(
+          bands_[k], profile, surface.points, system.fillets[k].radius);
+      const RollingArc<double> arc(corner, contact_at(bands_[k], corner));
+      profile.arc_a = arc.arc_length(true);
+      profile.arc_b = arc.arc_length(false);
+    }
+  }
 }
 
 Points FilletModel::rounded(const Points& film,
@@ -173,7 +187,7 @@ FilletGradient FilletModel::transpose(const Points& film,
         x[node] = variable(value, 3 * node);
       }
       const RollingArc<Dual> arc(
-          corner_of<Dual>(bands_[k], x, variable(at.along, 3 * kNodes),
+          corner_of<Dual>(bands_[k], profile, x, variable(at.along, 3 * kNodes),
                           Dual(radius, kNumbers, kNumbers - 1)),
           contact_at(bands_[k], at));
       const Rates rates = worth(arc, profile, by_rounded).derivatives();

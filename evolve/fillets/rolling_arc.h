@@ -59,9 +59,13 @@ struct BallCenters {
 /// Empty where there is no such ball, or none within the sections.
 std::optional<Contact> find_contact(const Corner<double>& corner);
 
+/// How much of a section's pace over arc and surface is that of the frozen
+/// design, by which points stay on the arc and facets keep their shape while
+/// the radius changes; the rest is even, by which none shrink to nothing.
+inline constexpr double kKept = 0.75;
+
 /// The corner's points once the ball is there: section `a` runs over its part
-/// of the arc and then on itself, at an even pace, so that its far end stays;
-/// so does `b`.
+/// of the arc and then on itself, so that its far end stays; so does `b`.
 template <class T>
 class RollingArc {
  public:
@@ -75,10 +79,15 @@ class RollingArc {
     return flat_ ? zero()
                  : Vector(on_arc(T(corner_.share)) - corner_.a.nodes[0]);
   }
+  /// What of a section's length the arc takes at an even pace.
+  T arc_length(bool of_a) const;
   /// Of the point at s of a section, in (0, length).
   Vector move(bool of_a, double s) const;
 
  private:
+  double part_of(bool of_a) const {
+    return of_a ? 1.0 - corner_.share : corner_.share;
+  }
   static Vector zero() { return Vector::Constant(T(0.0)); }
   void touch(const Contact& contact);
   Vector on_arc(const T& share) const;
@@ -167,15 +176,32 @@ typename RollingArc<T>::Vector RollingArc<T>::on_arc(const T& share) const {
 }
 
 template <class T>
+T RollingArc<T>::arc_length(bool of_a) const {
+  if (flat_) {
+    return T(0.0);
+  }
+  const Section<T>& section = of_a ? corner_.a : corner_.b;
+  const T arc = corner_.radius * turn_ * T(part_of(of_a));
+  return T(section.length) * arc /
+         (arc + T(section.length) - (of_a ? at_a_ : at_b_));
+}
+
+template <class T>
 typename RollingArc<T>::Vector RollingArc<T>::move(bool of_a, double s) const {
   if (flat_) {
     return zero();
   }
   const Section<T>& section = of_a ? corner_.a : corner_.b;
   const T& touched = of_a ? at_a_ : at_b_;
-  const double part = of_a ? 1.0 - corner_.share : corner_.share;
+  const double part = part_of(of_a);
   const T arc = corner_.radius * turn_ * T(part);
-  const T way = (arc + T(section.length) - touched) * T(s / section.length);
+  const T rest = T(section.length) - touched;
+  const double even = s / section.length;
+  const T kept = s < section.arc
+                     ? T(arc * T(s / section.arc))
+                     : T(arc + rest * T((s - section.arc) /
+                                        (section.length - section.arc)));
+  const T way = T(1.0 - kKept) * (arc + rest) * T(even) + T(kKept) * kept;
   const Vector from = section.at(T(s));
   if (way < arc) {
     const T gone = way / arc * T(part);

@@ -16,6 +16,7 @@ struct Section {
   std::array<Vector, 4> nodes;
   double length = 0.0;
   double out = 1.0;  // the outward normal is out x along x inward
+  double arc = 0.0;  // of length: what the arc took when it was frozen
 
   Vector at(const T& s) const;
   Vector slope(const T& s) const;  // by s

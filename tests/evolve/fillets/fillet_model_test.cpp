@@ -208,13 +208,17 @@ TEST(Fillet, OfRadiusZeroIsTheSurfaceItself) {
   const Shape shape = turned(cylinder(), plate(), 12, 24);
   const Points& x = shape.mesh.points;
   const films::FilmSystem none = system_of(0.0);
-  const Points frozen_round =
-      model_of(shape, system_of(kBall)).rounded(x, none);
-  const Points frozen_sharp = model_of(shape, none).rounded(x, none);
+  const Points sharp = model_of(shape, none).rounded(x, none);
+  // Where it was frozen round, its points come closer along it.
+  const Points round = model_of(shape, system_of(kBall)).rounded(x, none);
   for (std::size_t v = 0; v < x.size(); ++v) {
-    EXPECT_NEAR((frozen_round[v] - x[v]).norm(), 0.0, kTorusRounding);
-    EXPECT_EQ(frozen_sharp[v], x[v]);
+    EXPECT_EQ(sharp[v], x[v]);
+    const Vec3 off = round[v] - x[v];
+    EXPECT_NEAR(off.head<2>().norm(), 0.0, kTorusRounding);
+    EXPECT_NEAR(x[v].z() == 0.0 ? off.z() : 0.0, 0.0, kTorusRounding);
   }
+  EXPECT_NEAR(volume_of(shape, round), volume_of(shape, x),
+              kTorusRounding * volume_of(shape, x));
 }
 
 /// An uneven surface: its angle, and its curve, vary around.

@@ -16,6 +16,7 @@ namespace meniscus::fillet_run_test {
 namespace {
 
 using testing::AllOf;
+using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -27,7 +28,7 @@ constexpr double kOfVolume = 1e-3;
 
 /// A rod of radius 8 and length 20 on a round plate of radius 24.
 std::string rod() {
-  return R"(title = "A rod on a plate"
+  return R"toml(title = "A rod on a plate"
 units = "mm-N-MPa"
 
 [design.fillet]
@@ -36,7 +37,7 @@ bounds = [0.0, 6.0]
 
 [design.foot]
 initial = 8.0
-bounds = [6.0, 20.0]
+bounds = [6.0, 12.0]
 
 [design.tilt]
 initial = 0.0
@@ -108,7 +109,7 @@ kind = "compliance"
 [study]
 kind = "match"
 targets = { mass = 1.0 }
-)";
+)toml";
 }
 
 /// "case.toml:N: " of the fillet.
@@ -203,7 +204,8 @@ TEST(FilletRun, IsTheSameForAnyNumberOfThreads) {
 
 TEST(FilletRun, TellsWhatDoesNotFitWithItsLine) {
   const forward::ForwardModel wide(
-      case_of(changed(rod(), "initial = 8.0", "initial = 19.5")));
+      case_of(changed(rod(), "initial = 8.0\nbounds = [6.0, 12.0]",
+                      "initial = 19.5\nbounds = [6.0, 20.0]")));
   ASSERT_TRUE(wide.failure());
   EXPECT_THAT(wide.failure()->message,
               AllOf(HasSubstr(kFilletLine),
@@ -225,6 +227,9 @@ TEST(FilletRun, RefusesWhatItCannotRound) {
   EXPECT_THAT(problems_of(changed(rod(), fillet,
                                   "curves = [\"foot\", \"foot\"]\nradius = 1")),
               ElementsAre(HasSubstr("a curve has one radius")));
+  EXPECT_THAT(problems_of(changed(rod(), "initial = 3.0", "initial = 0.0")),
+              Contains(AllOf(HasSubstr("case.toml:46: "),
+                             HasSubstr("begin with a radius above 0"))));
   EXPECT_THAT(
       problems_of(changed(rod(), fillet, "curves = [\"foot\"]\nradius = -1")),
       ElementsAre(HasSubstr("0 or above")));
