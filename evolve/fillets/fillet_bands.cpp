@@ -7,11 +7,11 @@
 #include <map>
 #include <set>
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "evolve/fillets/section.h"
+#include "evolve/fillets/followers.h"
 
 namespace meniscus::fillets {
 
@@ -21,9 +21,8 @@ constexpr double kReach = 3.0;       // of the ball's farthest touch: the bands
 constexpr double kLeastReach = 1.2;  // the same, least
 constexpr double kOfWhole = 0.9;     // of a surface that a band may take
 constexpr double kOfHalf = 0.45;     // where another fillet begins at its end
+constexpr double kLeastApart = 0.3;  // of sections at their ends, by the curve
 constexpr double kCorner = 0.35;     // turn between edges of a curve [rad]
-constexpr double kOffBand = 0.3;     // of a band's length: another part's point
-constexpr int kSearchSteps = 30;
 
 std::string place_text(const Vec3& p) {
   return fmt::format("({:.4g}, {:.4g}, {:.4g})", p.x(), p.y(), p.z());
@@ -59,8 +58,8 @@ class Bands {
     find_normals(a, b);
     find_lengths(a, b);
     add_sections(a, b);
-    add_followers(a, true);
-    add_followers(b, false);
+    add_followers(a, true, result_);
+    add_followers(b, false, result_);
     return std::move(result_);
   }
 
@@ -237,30 +236,53 @@ class Bands {
     result_.length_b = band_length(b, sides_.b, touch_most);
   }
 
+  /// A length of sections, and what keeps them from being longer.
+  struct Room {
+    double length = 0.0;
+    Vec3 where = Vec3::Zero();
+  };
+
   /// As far as the surface goes everywhere, at most kReach x the touch.
   double band_length(const LabelledFacets& facets, int label,
                      double touch) const {
-    double length = kReach * touch;
-    Vec3 where = Vec3::Zero();
+    Room room{.length = kReach * touch};
     for (const Profile& profile : result_.profiles) {
       const Walk way = walk(facets, profile, kReach * touch / kOfHalf);
-      const double room =
-          !way.ended()
-              ? std::numeric_limits<double>::infinity()
-              : way.length() * (ends_at_fillet(way.end) ? kOfHalf : kOfWhole);
-      if (room < length) {
-        length = room;
-        where = x_[profile.point];
+      const double length =
+          way.length() * (ends_at_fillet(way.end) ? kOfHalf : kOfWhole);
+      if (way.ended() && length < room.length) {
+        room = {length, x_[profile.point]};
       }
     }
-    if (length < kLeastReach * touch) {
+    keep_from_crossing(facets, room);
+    if (room.length < kLeastReach * touch) {
       refuse(fmt::format(
           "radius {:.4g} does not fit on '{}' at {} of curve '{}': it has room "
           "for {:.3g} there; make the radius smaller or the surface wider",
-          spec_.radius, surface_.labels[label], place_text(where), spec_.curve,
-          spec_.radius * length / (kLeastReach * touch)));
+          spec_.radius, surface_.labels[label], place_text(room.where),
+          spec_.curve, spec_.radius * room.length / (kLeastReach * touch)));
     }
-    return length;
+    return room.length;
+  }
+
+  /// Inside a bend of the curve sections run together.
+  void keep_from_crossing(const LabelledFacets& facets, Room& room) const {
+    Points ends;
+    for (const Profile& profile : result_.profiles) {
+      ends.push_back(
+          at_mean(walk(facets, profile, room.length).at(room.length), x_));
+    }
+    const double whole = room.length;
+    for (std::size_t k = 0; k < ends.size(); ++k) {
+      const Profile& profile = result_.profiles[k];
+      const Vec3 apart = x_[profile.after] - x_[profile.point];
+      const double left = (ends[(k + 1) % ends.size()] - ends[k]).dot(apart) /
+                          apart.squaredNorm();
+      const double length = whole * (1.0 - kLeastApart) / (1.0 - left);
+      if (left < kLeastApart && length < room.length) {
+        room = {length, x_[profile.point]};
+      }
+    }
   }
 
   bool ends_at_fillet(const Edge& end) const {
@@ -279,93 +301,6 @@ class Bands {
         profile.a[k] = way_a.at(part * result_.length_a);
         profile.b[k] = way_b.at(part * result_.length_b);
       }
-    }
-  }
-
-  Section<double> section(const Profile& profile, bool of_a) const {
-    const auto& nodes = of_a ? profile.a : profile.b;
-    return {{x_[profile.point], at_mean(nodes[0], x_), at_mean(nodes[1], x_),
-             at_mean(nodes[2], x_)},
-            of_a ? result_.length_a : result_.length_b,
-            of_a ? result_.out_a : result_.out_b};
-  }
-
-  /// A point's place between two neighbouring sections.
-  struct Place {
-    int profile = 0;  // between this one and the next
-    double part = 0.0;
-    double s = 0.0;
-    double off = 0.0;  // its distance from there
-  };
-
-  Place place_of(const Vec3& p, const std::vector<Section<double>>& sections,
-                 int nearest) const {
-    const auto count = static_cast<int>(sections.size());
-    Place best{.off = std::numeric_limits<double>::infinity()};
-    Place at{.profile = nearest,
-             .part = 0.5,
-             .s = (p - sections[nearest].nodes[0]).norm()};
-    for (int k = 0; k < kSearchSteps; ++k) {
-      const Section<double>& from = sections[at.profile];
-      const Section<double>& to = sections[(at.profile + 1) % count];
-      const Vec3 here = from.at(at.s);
-      const Vec3 there = to.at(at.s);
-      const Vec3 gap = p - (1.0 - at.part) * here - at.part * there;
-      at.off = gap.norm();
-      if (at.part >= 0.0 && at.part <= 1.0 && at.off < best.off) {
-        best = at;
-      }
-      Eigen::Matrix<double, 3, 2> rates;
-      rates.col(0) =
-          (1.0 - at.part) * from.slope(at.s) + at.part * to.slope(at.s);
-      rates.col(1) = there - here;
-      const Eigen::Vector2d step =
-          (rates.transpose() * rates).ldlt().solve(rates.transpose() * gap);
-      at.s += step[0];
-      at.part += step[1];
-      if (at.part < 0.0) {
-        at.profile = (at.profile + count - 1) % count;
-        at.part = std::max(0.0, at.part + 1.0);
-      } else if (at.part > 1.0) {
-        at.profile = (at.profile + 1) % count;
-        at.part = std::min(1.0, at.part - 1.0);
-      }
-    }
-    return best;
-  }
-
-  int nearest_profile(const Vec3& p, double within) const {
-    int nearest = -1;
-    double least = within * within;
-    for (std::size_t k = 0; k < result_.profiles.size(); ++k) {
-      const double d = (x_[result_.profiles[k].point] - p).squaredNorm();
-      if (d < least) {
-        least = d;
-        nearest = static_cast<int>(k);
-      }
-    }
-    return nearest;
-  }
-
-  void add_followers(const LabelledFacets& facets, bool of_a) {
-    const double length = of_a ? result_.length_a : result_.length_b;
-    std::vector<Section<double>> sections;
-    for (const Profile& profile : result_.profiles) {
-      sections.push_back(section(profile, of_a));
-    }
-    for (const int v : facets.inner_points()) {
-      const int nearest = nearest_profile(x_[v], 1.1 * length);
-      if (nearest < 0) {
-        continue;
-      }
-      const Place at = place_of(x_[v], sections, nearest);
-      if (!(at.off < kOffBand * length) || !(at.s > 0.0) || !(at.s < length)) {
-        continue;
-      }
-      const std::size_t next = (at.profile + 1) % sections.size();
-      result_.profiles[at.profile].followers.push_back(
-          {v, of_a, at.s, 1.0 - at.part});
-      result_.profiles[next].followers.push_back({v, of_a, at.s, at.part});
     }
   }
 

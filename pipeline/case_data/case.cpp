@@ -315,7 +315,9 @@ EvaluatedCase evaluate(const Case& input, const VectorX& design,
   result.fea_edge = input.resolution.fea;
   if (problems.size() == before) {
     check_meetings(input, result.film_system, values);
-    check_nesting(input, result.film_system, design, problems);
+    if (problems.size() == before) {
+      check_nesting(input, result.film_system, design, problems);
+    }
     check_sides(input, result.film_system, values);
     check_places(input, result, values);
   }
