@@ -39,8 +39,8 @@ class FilletModel {
 
   /// The film's points with the fillets of `system`, one of the same names.
   /// Throws InvalidInput, with the place, where a ball does not fit within the
-  /// bands that were frozen (about 2.8 times the radius, and less where a
-  /// surface is narrow), and for a radius below 0.
+  /// bands that were frozen, for a radius below 0, and for one above 0 where
+  /// the model was frozen with 0.
   Points rounded(const Points& film, const films::FilmSystem& system) const;
 
   /// rounded() transposed.

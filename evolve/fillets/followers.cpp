@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include "evolve/fillets/section.h"
 
@@ -68,14 +68,16 @@ class Sections {
       if (at.off < best.off) {
         best = at;
       }
-      Eigen::Matrix<double, 3, 2> rates;
-      rates.col(0) =
+      const Vec3 by_s =
           (1.0 - at.part) * from.slope(at.s) + at.part * to.slope(at.s);
-      rates.col(1) = there - here;
-      const Eigen::Vector2d step =
-          (rates.transpose() * rates).ldlt().solve(rates.transpose() * gap);
-      at.s += step[0];
-      turn(at, at.part + step[1]);
+      const Vec3 by_part = there - here;
+      const double mixed = by_s.dot(by_part);
+      const double area2 =
+          by_s.squaredNorm() * by_part.squaredNorm() - mixed * mixed;
+      at.s += (by_part.squaredNorm() * by_s - mixed * by_part).dot(gap) / area2;
+      turn(at,
+           at.part +
+               (by_s.squaredNorm() * by_part - mixed * by_s).dot(gap) / area2);
     }
     return best;
   }

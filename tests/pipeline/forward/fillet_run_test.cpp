@@ -11,6 +11,7 @@
 #include "pipeline/forward/forward_model.h"
 #include "pipeline/forward/gradient_check.h"
 #include "tests/support/case_text.h"
+#include "tests/support/rod_on_plate.h"
 
 namespace meniscus::fillet_run_test {
 namespace {
@@ -25,98 +26,12 @@ constexpr double kRodRadius = 8.0;
 constexpr double kRodPi = std::numbers::pi;
 constexpr double kOfTorus = 0.02;  // four curved facets to its quarter turn
 
-/// A rod of radius 8 and length 20 on a round plate of radius 24.
-std::string rod() {
-  return R"toml(title = "A rod on a plate"
-units = "mm-N-MPa"
-
-[design.fillet]
-initial = 4.0
-bounds = [0.0, 6.0]
-
-[design.foot]
-initial = 8.0
-bounds = [6.0, 12.0]
-
-[design.tilt]
-initial = 0.0
-bounds = [-0.2, 0.2]
-
-[curves.foot]
-kind = "circle"
-center = [0, 0, 0]
-normal = [0, 0, 1]
-radius = "foot"
-
-[curves.head]
-kind = "circle"
-center = ["20 * tilt", 0, 20]
-normal = ["tilt", 0, 1]
-radius = 8
-
-[solids.plate]
-kind = "flange"
-at = [0, 0, 0]
-axis = [0, 0, 1]
-radius = 24
-thickness = 5
-curves = ["foot"]
-
-[solids.end]
-kind = "cap"
-curve = "head"
-
-[films.skin]
-kind = "loft"
-curves = ["foot", "head"]
-
-[fillets.root]
-curves = ["foot"]
-radius = "fillet"
-
-[bodies.part]
-enclosed_by = ["skin", "plate", "end"]
-volume = "pi * (8^2 * 20 + 24^2 * 5)"
-material = "steel"
-
-[resolution]
-fea = 5.0
-film = 2.5
-
-[materials.steel]
-youngs_modulus = 210000
-poisson_ratio = 0.3
-density = 1.0
-
-[load_cases.pull]
-supports = [{ on = "plate/bottom", fix = "xyz" }]
-loads = [{ on = "end", force = [0, 0, 20106] }]
-
-[responses.mass]
-kind = "mass"
-
-[responses.stress]
-kind = "von_mises_norm"
-power = 8
-
-[responses.peak]
-kind = "max_von_mises"
-
-[responses.give]
-kind = "compliance"
-
-[study]
-kind = "match"
-targets = { mass = 1.0 }
-)toml";
-}
-
 /// "case.toml:N: " of the fillet.
 const char* const kFilletLine = "case.toml:44: ";
 
 /// A film in two, from the foot to a waist and on, with a fillet at the waist.
-std::string creased_rod() {
-  std::string text = changed(rod(), "[solids.plate]", R"([curves.waist]
+std::string creased_rod_on_plate() {
+  std::string text = changed(rod_on_plate(), "[solids.plate]", R"([curves.waist]
 kind = "circle"
 center = [0, 0, 9]
 normal = [0, 0, 1]
@@ -137,7 +52,7 @@ Eigen::Vector3d design_of(double fillet, double foot = 8.0, double tilt = 0.0) {
 
 TEST(FilletRun, AddsTheMassOfTheTorus) {
   const case_data::Case input =
-      case_of(changed(rod(), "film = 2.5", "film = 1.25"));
+      case_of(changed(rod_on_plate(), "film = 2.5", "film = 1.25"));
   const forward::ForwardModel model(input);
   ASSERT_FALSE(model.failure()) << model.failure()->message;
   const auto exact = [](double r) {
@@ -157,7 +72,7 @@ TEST(FilletRun, AddsTheMassOfTheTorus) {
 }
 
 TEST(FilletRun, HasExactGradientsByRadiusAndAllElse) {
-  const case_data::Case input = case_of(rod());
+  const case_data::Case input = case_of(rod_on_plate());
   const forward::CaseGradientCheck check =
       forward::check_case_gradient(input, design_of(4.6, 8.3, 0.05));
   EXPECT_TRUE(check.report.passed)
@@ -166,7 +81,7 @@ TEST(FilletRun, HasExactGradientsByRadiusAndAllElse) {
 }
 
 TEST(FilletRun, RoundsTheCreaseBetweenTwoFilms) {
-  const case_data::Case input = case_of(creased_rod());
+  const case_data::Case input = case_of(creased_rod_on_plate());
   const forward::CaseGradientCheck check =
       forward::check_case_gradient(input, case_data::initial_design(input));
   EXPECT_TRUE(check.report.passed)
@@ -174,9 +89,9 @@ TEST(FilletRun, RoundsTheCreaseBetweenTwoFilms) {
 }
 
 TEST(FilletRun, LowersThePeakAtTheFoot) {
-  std::string text = changed(rod(), "initial = 4.0", "initial = 2.0");
+  std::string text = changed(rod_on_plate(), "initial = 4.0", "initial = 2.0");
   const case_data::Case sharp = case_of(text);
-  const case_data::Case round = case_of(rod());
+  const case_data::Case round = case_of(rod_on_plate());
   const auto peak = [](const case_data::Case& input) {
     const forward::ForwardModel model(input);
     const forward::Evaluation there =
@@ -188,7 +103,7 @@ TEST(FilletRun, LowersThePeakAtTheFoot) {
 }
 
 TEST(FilletRun, IsTheSameForAnyNumberOfThreads) {
-  const case_data::Case input = case_of(rod());
+  const case_data::Case input = case_of(rod_on_plate());
   const int before = omp_get_max_threads();
   const auto responses = [&](int count) {
     omp_set_num_threads(count);
@@ -200,13 +115,14 @@ TEST(FilletRun, IsTheSameForAnyNumberOfThreads) {
 }
 
 TEST(FilletRun, TellsWhatDoesNotFitWithItsLine) {
-  const std::string narrow = changed(rod(), "radius = 24", "radius = 12.5");
+  const std::string narrow =
+      changed(rod_on_plate(), "radius = 24", "radius = 12.5");
   const forward::ForwardModel tight(case_of(changed(narrow, "24^2", "12.5^2")));
   ASSERT_TRUE(tight.failure());
   EXPECT_THAT(tight.failure()->message,
               AllOf(HasSubstr(kFilletLine),
                     HasSubstr("radius 4 does not fit on 'plate/top'")));
-  const case_data::Case input = case_of(rod());
+  const case_data::Case input = case_of(rod_on_plate());
   const forward::ForwardModel model(input);
   const forward::Evaluation large = model.evaluate(design_of(12.0));
   ASSERT_TRUE(large.failure);
@@ -216,25 +132,26 @@ TEST(FilletRun, TellsWhatDoesNotFitWithItsLine) {
 
 TEST(FilletRun, RefusesWhatItCannotRound) {
   const std::string fillet = "curves = [\"foot\"]\nradius = \"fillet\"";
-  EXPECT_THAT(problems_of(changed(rod(), fillet,
+  EXPECT_THAT(problems_of(changed(rod_on_plate(), fillet,
                                   "curves = [\"plate/edge\"]\nradius = 1")),
               ElementsAre(AllOf(
                   HasSubstr("case.toml:45: "),
                   HasSubstr("there is no curve of a film 'plate/edge'"))));
-  EXPECT_THAT(problems_of(changed(rod(), fillet,
+  EXPECT_THAT(problems_of(changed(rod_on_plate(), fillet,
                                   "curves = [\"foot\", \"foot\"]\nradius = 1")),
               ElementsAre(HasSubstr("a curve has one radius")));
-  EXPECT_THAT(problems_of(changed(rod(), "initial = 4.0", "initial = 0.0")),
-              Contains(AllOf(HasSubstr("case.toml:46: "),
-                             HasSubstr("begin with a radius above 0"))));
   EXPECT_THAT(
-      problems_of(changed(rod(), fillet, "curves = [\"foot\"]\nradius = -1")),
-      ElementsAre(HasSubstr("0 or above")));
+      problems_of(changed(rod_on_plate(), "initial = 4.0", "initial = 0.0")),
+      Contains(AllOf(HasSubstr("case.toml:46: "),
+                     HasSubstr("begin with a radius above 0"))));
+  EXPECT_THAT(problems_of(changed(rod_on_plate(), fillet,
+                                  "curves = [\"foot\"]\nradius = -1")),
+              ElementsAre(HasSubstr("0 or above")));
 }
 
 /// Two rods on the plate, which grow and may move.
 std::string two_rods(const std::string& x) {
-  std::string text = changed(rod(), "[solids.plate]", R"([curves.other]
+  std::string text = changed(rod_on_plate(), "[solids.plate]", R"([curves.other]
 kind = "circle"
 center = [)" + x + R"(, 0, 0]
 normal = [0, 0, 1]
