@@ -17,8 +17,8 @@
 #include "core/geometry/mesh_checks.h"
 #include "core/math/union_find.h"
 #include "io/vtk_files.h"
-#include "pipeline/case_data/film_advice.h"
-#include "pipeline/case_data/film_start.h"
+#include "pipeline/case_films/film_advice.h"
+#include "pipeline/case_films/film_start.h"
 #include "pipeline/forward/part_warnings.h"
 #include "pipeline/forward/walls.h"
 #include "pipeline/frames/film_frames.h"
@@ -321,10 +321,10 @@ int evolve_command(const EvolveArguments& arguments) {
     return kExitWrongInput;
   }
   const frozen::FilmModel model =
-      case_data::freeze_films(input, inputs,
-                              {.edge = inputs.fea_edge,
-                               .refinements = input.resolution.refinements,
-                               .monitor = &monitor});
+      case_films::freeze_films(input, inputs,
+                               {.edge = inputs.fea_edge,
+                                .refinements = input.resolution.refinements,
+                                .monitor = &monitor});
   const settle::FilmState& film = model.reference();
   const films::NestingReport nesting =
       film.failure ? films::NestingReport{}
@@ -348,11 +348,11 @@ int evolve_command(const EvolveArguments& arguments) {
   }
   if (failure) {
     const std::string advice =
-        case_data::tried_advice(input, inputs, *failure,
-                                {.edge = inputs.fea_edge,
-                                 .refinements = input.resolution.refinements,
-                                 .findings = findings,
-                                 .monitor = &monitor});
+        case_films::tried_advice(input, inputs, *failure,
+                                 {.edge = inputs.fea_edge,
+                                  .refinements = input.resolution.refinements,
+                                  .findings = findings,
+                                  .monitor = &monitor});
     std::string message = failure->message;
     message += advice.empty() ? "" : "; " + advice;
     if (arguments.pictures) {

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "fea/stress/stress.h"
-#include "pipeline/case_data/film_start.h"
+#include "pipeline/case_films/film_start.h"
 #include "pipeline/forward/adaptation.h"
 #include "python/call.h"
 #include "python/errors.h"
@@ -48,10 +48,10 @@ std::shared_ptr<const FrozenModel> freeze_film(
   const case_data::EvaluatedCase numbers =
       case_data::evaluate(*input, case_data::initial_design(*input));
   model->film_alone.emplace(
-      case_data::freeze_films(*input, numbers,
-                              {.edge = numbers.fea_edge * edge_factor,
-                               .refinements = input->resolution.refinements,
-                               .monitor = &monitor}));
+      case_films::freeze_films(*input, numbers,
+                               {.edge = numbers.fea_edge * edge_factor,
+                                .refinements = input->resolution.refinements,
+                                .monitor = &monitor}));
   return model;
 }
 

@@ -38,12 +38,10 @@ Vec3 unit_rate(const Vec3& v, const Vec3& rate) {
   return through_unit(v, rate);  // symmetric
 }
 
-void refuse_walls(const FilmSpace& space) {
-  if (space.has_walls()) {
-    throw InvalidInput(
-        "a film that slides on walls has no exact gradient: hold its rim on a "
-        "curve");
-  }
+[[noreturn]] void refuse_wall() {
+  throw InvalidInput(
+      "a film that slides on curves, on bent walls or on several at once has "
+      "no exact gradient: hold its rim on a curve, or let it slide on a plane");
 }
 
 }  // namespace
@@ -54,10 +52,37 @@ Vec3 line_axis(const Vec3& t) {
   return Vec3::Unit(least);
 }
 
+/// The way of a film's edge on a plane wall, as wall_directions() goes, before
+/// it is made unit length.
+FilmSpace::WallWay FilmSpace::wall_way(int k, const Points& points,
+                                       const Vec3& normal2) const {
+  const int v = walled_[k];
+  const Wall& wall = walls_[k];
+  if (wall.curve >= 0 || wall.level_sets.size() != 1 || rank(v) != 1) {
+    refuse_wall();
+  }
+  const PlaceJet jet =
+      jet_at(level_sets_[wall.level_sets[0]].formula, points[v]);
+  if (!jet.hessian.isZero(0.0)) {
+    refuse_wall();
+  }
+  WallWay result;
+  result.normal = jet.gradient.normalized();
+  const Vec3& n = result.normal;
+  result.way = normal2 - normal2.dot(n) * n;
+  if (const Edge& ends = line_ends(v); ends[0] >= 0) {
+    const Vec3 across = n.cross(points[ends[1]] - points[ends[0]]);
+    result.across = turns_across(result.way.normalized(), across.normalized());
+    if (result.across) {
+      result.way = across;
+    }
+  }
+  return result;
+}
+
 void FilmSpace::transpose_directions(const Points& points,
                                      const Points& by_directions,
                                      Points& sum) const {
-  refuse_walls(*this);
   // Area-weighted normals at the vertices, before they are made unit length.
   Points normal2(points.size(), Vec3::Zero());
   for (std::size_t f = 0; f < facets_.size(); ++f) {
@@ -74,7 +99,18 @@ void FilmSpace::transpose_directions(const Points& points,
   Points by_normal2(points.size(), Vec3::Zero());
   for (int v = 0; v < vertex_count(); ++v) {
     const int at = first_[v];
-    if (rank(v) == 1) {
+    if (rank(v) > 0 && !wall_of_.empty() && wall_of_[v] >= 0) {
+      const WallWay way = wall_way(wall_of_[v], points, normal2[v]);
+      const Vec3 by_way = through_unit(way.way, by_directions[at]);
+      const Vec3& n = way.normal;
+      const Edge& ends = line_ends(v);
+      if (way.across) {
+        sum[ends[1]] += by_way.cross(n);
+        sum[ends[0]] -= by_way.cross(n);
+      } else {
+        by_normal2[v] = by_way - n.dot(by_way) * n;
+      }
+    } else if (rank(v) == 1) {
       by_normal2[v] = through_unit(normal2[v], by_directions[at]);
     } else if (rank(v) == 2) {
       const Edge& ends = line_ends(v);
@@ -104,7 +140,6 @@ void FilmSpace::transpose_directions(const Points& points,
 
 Points FilmSpace::direction_rates(const Points& points,
                                   const Points& motion) const {
-  refuse_walls(*this);
   // Area-weighted normals and their rates: N = b x c, dN = db x c + b x dc.
   Points normal2(points.size(), Vec3::Zero());
   Points rate2(points.size(), Vec3::Zero());
@@ -128,7 +163,14 @@ Points FilmSpace::direction_rates(const Points& points,
   Points result(vertex_.size(), Vec3::Zero());
   for (int v = 0; v < vertex_count(); ++v) {
     const int at = first_[v];
-    if (rank(v) == 1) {
+    if (rank(v) > 0 && !wall_of_.empty() && wall_of_[v] >= 0) {
+      const WallWay way = wall_way(wall_of_[v], points, normal2[v]);
+      const Vec3& n = way.normal;
+      const Edge& ends = line_ends(v);
+      result[at] = unit_rate(
+          way.way, way.across ? Vec3(n.cross(motion[ends[1]] - motion[ends[0]]))
+                              : Vec3(rate2[v] - n.dot(rate2[v]) * n));
+    } else if (rank(v) == 1) {
       result[at] = unit_rate(normal2[v], rate2[v]);
     } else if (rank(v) == 2) {
       const Edge& ends = line_ends(v);

@@ -51,7 +51,9 @@ FilmEnergy::FilmEnergy(const films::FilmComplex& complex, FilmMotion motion)
   }
   for (const films::ComplexSurface& surface : complex.surfaces) {
     liquid_.push_back(surface.liquid ? 1 : 0);
-    plain_.push_back(surface.liquid && !surface.tension_field ? 1 : 0);
+    counted_.push_back(surface.liquid || surface.wetted ? 1 : 0);
+    wetted_.push_back(surface.wetted);
+    plain_.push_back(counted_.back() != 0 && !surface.tension_field ? 1 : 0);
     resisted_ = resisted_ || surface.tension_field;
     std::vector<int> sides(body_count_, 0);
     const int s = static_cast<int>(side_.size());
@@ -90,8 +92,10 @@ double FilmEnergy::value(const Points& points,
     if (plain_[label_[f]] != 0) {
       const Triangle& t = facets_[f];
       const Vec3& a = points[t[0]];
+      const Vec3 area2 = (points[t[1]] - a).cross(points[t[2]] - a);
+      const Vec3* normal = flat(static_cast<int>(f));
       sum += targets.tension[label_[f]] *
-             (points[t[1]] - a).cross(points[t[2]] - a).norm();
+             (normal != nullptr ? normal->dot(area2) : area2.norm());
     }
   }
   sum *= 0.5;
@@ -188,9 +192,12 @@ Points FilmEnergy::gradient(const Points& points,
 VectorX FilmEnergy::areas(const Points& points) const {
   VectorX sum = VectorX::Zero(static_cast<Eigen::Index>(liquid_.size()));
   for (std::size_t f = 0; f < facets_.size(); ++f) {
-    if (liquid_[label_[f]] != 0) {
+    if (counted_[label_[f]] != 0) {
       const std::array<Vec3, 3> c = corners_of(points, facets_[f]);
-      sum[label_[f]] += 0.5 * (c[1] - c[0]).cross(c[2] - c[0]).norm();
+      const Vec3 area2 = (c[1] - c[0]).cross(c[2] - c[0]);
+      const Vec3* normal = flat(static_cast<int>(f));
+      sum[label_[f]] +=
+          0.5 * (normal != nullptr ? normal->dot(area2) : area2.norm());
     }
   }
   return sum;
@@ -202,7 +209,7 @@ Points FilmEnergy::area_gradient(const Points& points,
   count_operations(kAreaSlopeWork * static_cast<double>(facets_.size()));
   for (std::size_t f = 0; f < facets_.size(); ++f) {
     const int label = label_[f];
-    if (liquid_[label] == 0 || weight[label] == 0.0) {
+    if (counted_[label] == 0 || weight[label] == 0.0) {
       continue;
     }
     const Triangle& t = facets_[f];
@@ -210,7 +217,9 @@ Points FilmEnergy::area_gradient(const Points& points,
     const Vec3 ac = points[t[2]] - points[t[0]];
     Vec3 n = ab.cross(ac);
     const double size = n.norm();
-    if (size > 0.0) {
+    if (const Vec3* normal = flat(static_cast<int>(f)); normal != nullptr) {
+      n = 0.5 * weight[label] * *normal;
+    } else if (size > 0.0) {
       n *= 0.5 * weight[label] / size;
     }
     // dA/dx_i = n x e_i / 2, e_i opposite: e_b = -ac, e_c = ab.

@@ -40,7 +40,8 @@ class FilmEnergy {
     return body < body_count_ ? side_[label_[facet]][body] : 0;
   }
 
-  /// Energy: tension x area and every other term [force length].
+  /// Energy: tension x area, of wetted walls too, and every other term
+  /// [force length].
   double value(const Points& points, const films::FilmTargets& targets) const;
   /// Area of the films [length^2].
   double area(const Points& points) const;
@@ -55,7 +56,8 @@ class FilmEnergy {
   /// dF/dx of one functional, one per vertex.
   Points functional_gradient(const Points& points, int functional) const;
 
-  /// Per surface its area, 0 of caps [length^2]; gradient of sum weight x area.
+  /// Per surface its area, 0 of caps that wet no wall [length^2]; gradient of
+  /// sum weight x area.
   VectorX areas(const Points& points) const;
   Points area_gradient(const Points& points, const VectorX& weight) const;
   /// False: caps, and films whose tension is a field.
@@ -105,6 +107,11 @@ class FilmEnergy {
  private:
   friend class FilmProducts;  // motions x derivatives
   Vec3 cone_origin(const Points& points) const;
+  /// The normal that a facet's area counts along; null: its own.
+  const Vec3* flat(int facet) const {
+    const std::optional<Vec3>& normal = wetted_[label_[facet]];
+    return normal ? &*normal : nullptr;
+  }
   std::vector<double> pressure_jumps(const VectorX& pressure) const;
   void add_term_gradients(const Points& points, int functional,
                           Points& sum) const;
@@ -122,11 +129,13 @@ class FilmEnergy {
   FilmSpace space_;
   std::vector<Triangle> facets_;
   std::vector<int> label_;
-  std::vector<char> liquid_;            // per surface
-  std::vector<char> plain_;             // per surface: tension is a number
-  std::vector<std::vector<int>> side_;  // per surface, per body
-  std::vector<char> cone_;              // per body: cones measure it
-  bool open_cones_ = false;             // of a body that facets do not close
+  std::vector<char> liquid_;                 // per surface
+  std::vector<char> counted_;                // per surface: liquid or wetted
+  std::vector<std::optional<Vec3>> wetted_;  // per surface: along what normal
+  std::vector<char> plain_;                  // per surface: tension is a number
+  std::vector<std::vector<int>> side_;       // per surface, per body
+  std::vector<char> cone_;                   // per body: cones measure it
+  bool open_cones_ = false;  // of a body that facets do not close
   VectorX volume_offset_;
   std::vector<std::unique_ptr<FilmTerm>> terms_;
   int body_count_ = 0;

@@ -14,9 +14,10 @@ namespace meniscus::energy {
 
 namespace {
 
-FacetFrame frame_of(const Points& points, const Triangle& t,
-                    const Vec3& origin) {
-  return {points[t[0]] - origin, points[t[1]] - origin, points[t[2]] - origin};
+FacetFrame frame_of(const Points& points, const Triangle& t, const Vec3& origin,
+                    const Vec3* flat) {
+  return {points[t[0]] - origin, points[t[1]] - origin, points[t[2]] - origin,
+          flat};
 }
 
 /// Of all facets' elements without fields: the frame, a corner's vector, a pair
@@ -133,8 +134,9 @@ void FilmEnergy::elements(const Points& points, const Points& directions,
     }
     // Second derivatives along the corners' directions of T A - p V, with the
     // facet's area A and the volume V of its cone to the origin.
-    const FacetFrame frame = frame_of(points, facets_[f], origin);
-    const double area_factor = frame.area2 > 0.0 ? 0.5 * t / frame.area2 : 0.0;
+    const FacetFrame frame =
+        frame_of(points, facets_[f], origin, flat(static_cast<int>(f)));
+    const double area_factor = frame.turns ? 0.5 * t / frame.area2 : 0.0;
     int slot = element_start_[f];
     std::array<Vec3, 9> u;  // e_i x v, without its part along the normal
     for (int i = corner_start_[f]; i < corner_start_[f + 1]; ++i) {

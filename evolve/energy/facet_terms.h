@@ -27,12 +27,23 @@ struct FacetFrame {
   std::array<Vec3, 3> opposite;  // e_i
   Vec3 normal;                   // unit; zero for a facet without area
   double area2;                  // |N|, twice the area
+  bool turns;  // its normal does, when corners move: not where it is given
 
-  FacetFrame(const Vec3& a, const Vec3& b, const Vec3& c)
+  /// `flat`: the unit normal along which its area counts, with its sign;
+  /// null: its own.
+  FacetFrame(const Vec3& a, const Vec3& b, const Vec3& c,
+             const Vec3* flat = nullptr)
       : corner{a, b, c}, opposite{c - b, a - c, b - a} {
     normal = (b - a).cross(c - a);
+    if (flat != nullptr) {
+      area2 = normal.dot(*flat);
+      normal = *flat;
+      turns = false;
+      return;
+    }
     area2 = normal.norm();
-    if (area2 > 0.0) {
+    turns = area2 > 0.0;
+    if (turns) {
       normal /= area2;
     }
   }
@@ -53,7 +64,9 @@ struct FacetFrame {
   double area_hessian(int i, const Vec3& v, int j, const Vec3& w) const {
     const Vec3 u_i = opposite[i].cross(v);
     const Vec3 u_j = opposite[j].cross(w);
-    double sum = (u_i.dot(u_j) - normal.dot(u_i) * normal.dot(u_j)) / area2;
+    double sum =
+        turns ? (u_i.dot(u_j) - normal.dot(u_i) * normal.dot(u_j)) / area2
+              : 0.0;
     if (i != j) {
       const double twist = normal.dot(w.cross(v));
       sum += j == (i + 2) % 3 ? twist : -twist;

@@ -23,14 +23,14 @@ constexpr double kTermStep = 1e-3;
 struct FacetMotion {
   std::array<Vec3, 3> opposite;  // of e_i
   Vec3 normal2 = Vec3::Zero();   // of N
-  Vec3 normal = Vec3::Zero();    // of n; zero for a facet without area
+  Vec3 normal = Vec3::Zero();    // of n; zero where that does not turn
 
   FacetMotion(const FacetFrame& frame, const Corners& d)
       : opposite{d[2] - d[1], d[0] - d[2], d[1] - d[0]} {
     for (int i = 0; i < 3; ++i) {
       normal2 += frame.opposite[i].cross(d[i]);
     }
-    if (frame.area2 > 0.0) {
+    if (frame.turns) {
       normal =
           (normal2 - frame.normal.dot(normal2) * frame.normal) / frame.area2;
     }
@@ -64,10 +64,10 @@ VectorX FilmProducts::over_films(const Points& points, const Points& motion,
   const FilmEnergy& e = energy_;
   VectorX sum = VectorX::Zero(static_cast<Eigen::Index>(e.liquid_.size()));
   for (std::size_t f = 0; f < e.facets_.size(); ++f) {
-    if (e.liquid_[e.label_[f]] != 0) {
+    if (e.counted_[e.label_[f]] != 0) {
       const Corners c = corners_of(points, e.facets_[f]);
       const Corners d = corners_of(motion, e.facets_[f]);
-      const FacetFrame frame(c[0], c[1], c[2]);
+      const FacetFrame frame(c[0], c[1], c[2], e.flat(static_cast<int>(f)));
       sum[e.label_[f]] += of_facet(frame, FacetMotion(frame, d), d);
     }
   }
@@ -98,9 +98,9 @@ void FilmProducts::add_facets(const Points& points, const Points& motion,
     }
     const Corners d = corners_of(motion, at);
     const FacetFrame frame(points[at[0]] - origin, points[at[1]] - origin,
-                           points[at[2]] - origin);
+                           points[at[2]] - origin, e.flat(static_cast<int>(f)));
     const FacetMotion moved(frame, d);
-    const double half = frame.area2 > 0.0 ? 0.5 * t : 0.0;
+    const double half = 0.5 * t;  // of a facet without area the normal is 0
     for (int i = 0; i < 3; ++i) {
       const int j = (i + 1) % 3;
       const int k = (i + 2) % 3;
@@ -177,9 +177,9 @@ Points FilmProducts::third_times(const Points& points,
     const Triangle& at = e.facets_[f];
     const Corners c = corners_of(points, at);
     const Corners d = corners_of(motion, at);
-    const FacetFrame frame(c[0], c[1], c[2]);
+    const FacetFrame frame(c[0], c[1], c[2], e.flat(static_cast<int>(f)));
     const FacetMotion moved(frame, d);
-    const double t = frame.area2 > 0.0 ? tension_[e.label_[f]] : 0.0;
+    const double t = frame.turns ? tension_[e.label_[f]] : 0.0;
     const double p = jump[e.label_[f]];
     const Vec3& n = frame.normal;
     Vec3 by_first = Vec3::Zero();

@@ -298,11 +298,15 @@ void FilmSpace::wall_directions(int k, const Points& points, const Vec3& normal,
     if (const Edge& ends = line_ends(v); ends[0] >= 0) {
       // Where the film lies flat on the wall, or films cancel.
       const Vec3 across = unit(n.cross(points[ends[1]] - points[ends[0]]));
-      if (!(std::abs(result[at].dot(across)) > kAcross)) {
+      if (turns_across(result[at], across)) {
         result[at] = across;
       }
     }
   }
+}
+
+bool FilmSpace::turns_across(const Vec3& along, const Vec3& across) {
+  return !(std::abs(along.dot(across)) > kAcross);
 }
 
 Points FilmSpace::moved(const Points& points, const Points& directions,

@@ -49,7 +49,8 @@ class FilmSpace {
 
   /// directions() transposed: adds to `sum`, one per vertex, the gradient by
   /// the points of something whose gradient by each direction is given. Throws
-  /// InvalidInput for films that slide on walls.
+  /// InvalidInput for films that slide on curves, on several walls at once or
+  /// on walls that are no planes.
   void transpose_directions(const Points& points, const Points& by_directions,
                             Points& sum) const;
 
@@ -90,6 +91,13 @@ class FilmSpace {
   double nearest(const Wall& wall, const Vec3& at) const;
   void wall_directions(int k, const Points& points, const Vec3& normal,
                        Points& result) const;
+  struct WallWay {
+    Vec3 normal = Vec3::Zero();  // of the wall, unit
+    Vec3 way = Vec3::Zero();
+    bool across = false;  // of the film's edge, not along the film's normal
+  };
+  WallWay wall_way(int k, const Points& points, const Vec3& normal2) const;
+  static bool turns_across(const Vec3& along, const Vec3& across);
 
   std::vector<Triangle> facets_;
   std::vector<char> film_;  // per facet: liquid

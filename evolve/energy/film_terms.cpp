@@ -321,7 +321,8 @@ std::vector<int> held_quantities(const films::FilmComplex& complex) {
 films::FilmTargets targets_of(const films::FilmComplex& complex) {
   films::FilmTargets targets;
   for (const films::ComplexSurface& surface : complex.surfaces) {
-    targets.tension.push_back(surface.liquid ? surface.tension : 0.0);
+    targets.tension.push_back(surface.liquid || surface.wetted ? surface.tension
+                                                               : 0.0);
   }
   targets.bodies = complex.bodies;
   for (const int q : held_quantities(complex)) {

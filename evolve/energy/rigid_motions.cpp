@@ -19,11 +19,18 @@ void FilmEnergy::find_floating(const films::FilmComplex& complex) {
   }
   const int points = static_cast<int>(complex.mesh.points.size());
   std::vector<char> held(points, 0);
-  bool any_free = false;
   for (int v = 0; v < points; ++v) {
     held[v] = complex.vertices[v].kind != films::VertexKind::Free ||
               (space_.rank(v) == 0 && space_.vertex_count() > v);
-    any_free = any_free || held[v] == 0;
+  }
+  // The inside of a face that films wet goes where its rim slides.
+  for (std::size_t f = 0; f < facets_.size(); ++f) {
+    for (const int v : facets_[f]) {
+      if (wetted_[label_[f]] &&
+          complex.vertices[v].kind == films::VertexKind::InCap) {
+        held[v] = 0;
+      }
+    }
   }
   UnionFind parts(complex.mesh.points.size());
   for (const Triangle& t : facets_) {

@@ -79,12 +79,16 @@ struct LineIntegral {
 struct ComplexSurface {
   std::string name;
   bool liquid = true;    // false: solid, its facets carry no tension
-  double tension = 0.0;  // [force/length]; 0 on caps
+  double tension = 0.0;  // [force/length]; 0 on caps that wet no wall
   std::optional<Expression> tension_field;  // over x, y, z; replaces tension
   bool refine = true;                       // false: facets stay as they are
   int constraints = -1;  // of the vertices born inside it (obstacles)
   int band = -1;         // of a ring: index into bands
   int face = -1;         // of a solid's face: index into solid_faces
+  /// Of a solid face that films wet on a plane wall: the unit normal that its
+  /// facets have. Its area along that normal counts with `tension`, which may
+  /// be below 0; `constraints` is of its rim, which slides on the wall.
+  std::optional<Vec3> wetted;
 };
 
 /// An edge or a face of a solid from a CAD program.

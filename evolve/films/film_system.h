@@ -40,6 +40,15 @@ struct FilmSpec {
   double within = 0.0;  // its rims may be so far off their curves [length]
 };
 
+/// A plane that films slide on where their curves lie in it.
+struct PlaneWall {
+  Vec3 at = Vec3::Zero();       // a point of it [length]
+  Vec3 normal = Vec3::UnitZ();  // not 0; either way, any length
+  /// Energy per wetted area [force/length]: -T cos a for films of tension T
+  /// that meet the wall at the contact angle a, measured in the body (Young).
+  double tension = 0.0;
+};
+
 /// A solid from a CAD program whose faces are caps (CapSpec::solid).
 struct SolidSpec {
   struct Rim {
@@ -72,6 +81,10 @@ struct CapSpec {
   /// Instead of a disk the ruled patch between the first and the third of the
   /// curve's four sides; a cylinder's where these are equal arcs.
   bool ruled = false;
+  /// Of a disk: the face that a body wets on this wall. Its curves are where
+  /// the films on them begin; they hold nothing. The same for every design of a
+  /// model but for its tension.
+  std::optional<PlaneWall> wall = std::nullopt;
   /// Instead of these a face of one of the system's solids; `rims` are the
   /// solid's rims at which it ends.
   int solid = -1;

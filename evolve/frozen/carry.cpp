@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "core/math/union_find.h"
+#include "evolve/energy/film_space.h"
 #include "evolve/films/solid_frame.h"
 
 namespace meniscus::frozen {
@@ -38,7 +39,96 @@ std::vector<char> carried_vertices(const films::FilmComplex& reference,
   return result;
 }
 
+/// Unit normals of the walls that a vertex slides on.
+std::vector<Vec3> wall_normals_at(const films::FilmComplex& reference, int v) {
+  std::vector<Vec3> result;
+  const films::ComplexVertex& vertex = reference.vertices[v];
+  if (vertex.kind == films::VertexKind::Free && vertex.constraints >= 0) {
+    for (const int wall : reference.constraint_sets[vertex.constraints]) {
+      result.push_back(energy::jet_at(reference.level_sets[wall].formula,
+                                      reference.mesh.points[v])
+                           .gradient.normalized());
+    }
+  }
+  return result;
+}
+
+/// Orthonormal directions across the normals of walls.
+std::vector<Vec3> ways_left(const std::vector<Vec3>& normals) {
+  if (normals.empty()) {
+    return {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()};
+  }
+  const Vec3& n = normals[0];
+  if (normals.size() == 1) {
+    const Vec3 first = n.cross(energy::line_axis(n)).normalized();
+    return {first, n.cross(first)};
+  }
+  if (normals.size() == 2) {
+    return {n.cross(normals[1]).normalized()};
+  }
+  return {};
+}
+
 }  // namespace
+
+/// With the Laplacian L of one coordinate and the basis B of the ways that are
+/// left, the moves are B y, (B' L B) y = B' (outer moves).
+void Carry::bind_to_walls(const films::FilmComplex& reference,
+                          const SparseMatrix& inner, Extension& extension) {
+  std::vector<Eigen::Triplet<double>> entries;
+  int count = 0;
+  bool walls = false;
+  for (std::size_t i = 0; i < extension.vertices.size(); ++i) {
+    const std::vector<Vec3> normals =
+        wall_normals_at(reference, extension.vertices[i]);
+    walls = walls || !normals.empty();
+    for (const Vec3& way : ways_left(normals)) {
+      for (int k = 0; k < 3; ++k) {
+        entries.emplace_back(static_cast<int>(3 * i) + k, count, way[k]);
+      }
+      ++count;
+    }
+  }
+  if (!walls) {
+    return;
+  }
+  const auto rows = static_cast<Eigen::Index>(3 * extension.vertices.size());
+  extension.ways.resize(rows, count);
+  extension.ways.setFromTriplets(entries.begin(), entries.end());
+  entries.clear();
+  for (int j = 0; j < inner.outerSize(); ++j) {
+    for (SparseMatrix::InnerIterator it(inner, j); it; ++it) {
+      for (int k = 0; k < 3; ++k) {
+        entries.emplace_back(3 * static_cast<int>(it.row()) + k, 3 * j + k,
+                             it.value());
+      }
+    }
+  }
+  SparseMatrix lower(rows, rows);
+  lower.setFromTriplets(entries.begin(), entries.end());
+  const SparseMatrix all = lower.selfadjointView<Eigen::Lower>();
+  const SparseMatrix left = extension.ways.transpose() * all * extension.ways;
+  SparseMatrix system = left.triangularView<Eigen::Lower>();
+  system.makeCompressed();
+  extension.factor.emplace(system, FactorKind::Cholesky);
+  if (!extension.factor->factorize(system)) {
+    throw MeshError(
+        "the reference film cannot be carried along its walls: its Laplacian "
+        "is singular there");
+  }
+}
+
+/// `right`: three columns, one row per vertex.
+Eigen::MatrixXd Carry::Extension::solve(const Eigen::MatrixXd& right) const {
+  if (ways.cols() == 0) {
+    return factor->solve(right);
+  }
+  const Eigen::MatrixXd rows = right.transpose();  // 3 to a vertex
+  const Eigen::Map<const VectorX> all(rows.data(), rows.size());
+  const VectorX found = ways * VectorX(factor->solve(ways.transpose() * all));
+  return Eigen::Map<const Eigen::MatrixXd>(found.data(), 3, right.rows())
+      .transpose();
+}
 
 Carry::Extension Carry::extend(const films::FilmComplex& reference,
                                films::VertexKind kind,
@@ -66,6 +156,12 @@ Carry::Extension Carry::extend(const films::FilmComplex& reference,
       film ? energy::CotanWeights::Clamped : energy::CotanWeights::Exact);
   extension.outer.swap(laplace.outer);
   laplace.inner.makeCompressed();
+  if (film) {
+    bind_to_walls(reference, laplace.inner, extension);
+    if (extension.factor) {
+      return extension;
+    }
+  }
   // Films with triple lines have more unknowns than vertices: no order then.
   const bool fits = order.size() == extension.vertices.size();
   extension.factor.emplace(laplace.inner, FactorKind::Cholesky,
@@ -89,6 +185,7 @@ Carry::Carry(const films::FilmComplex& reference,
   for (std::size_t v = 0; v < reference.vertices.size(); ++v) {
     const films::ComplexVertex& vertex = reference.vertices[v];
     const auto id = static_cast<int>(v);
+    slides_ = slides_ || !wall_normals_at(reference, id).empty();
     if (vertex.kind == films::VertexKind::OnCurve) {
       stands_on_curves_[v] = 1;
       stands_[vertex.curve].push_back({id, vertex.t, 1.0});
@@ -144,8 +241,7 @@ Points Carry::rim_moves(const std::vector<curves::Curve>& curves) const {
   return moves;
 }
 
-void Carry::apply(const Extension& extension, const Points& moves,
-                  Points& result) {
+void Carry::apply(const Extension& extension, Points& moves) {
   if (extension.vertices.empty()) {
     return;
   }
@@ -155,9 +251,9 @@ void Carry::apply(const Extension& extension, const Points& moves,
   if (right.isZero(0.0)) {
     return;
   }
-  const Eigen::MatrixXd found = extension.factor->solve(right);
+  const Eigen::MatrixXd found = extension.solve(right);
   for (std::size_t i = 0; i < extension.vertices.size(); ++i) {
-    result[extension.vertices[i]] +=
+    moves[extension.vertices[i]] +=
         found.row(static_cast<Eigen::Index>(i)).transpose();
   }
 }
@@ -174,7 +270,7 @@ void Carry::add_transposed(const Extension& extension, const Points& by_points,
         by_points[extension.vertices[i]].transpose();
   }
   const Eigen::MatrixXd sum =
-      extension.outer.transpose() * extension.factor->solve(right);
+      extension.outer.transpose() * extension.solve(right);
   for (std::size_t v = 0; v < result.size(); ++v) {
     result[v] += sum.row(static_cast<Eigen::Index>(v)).transpose();
   }
@@ -182,8 +278,15 @@ void Carry::add_transposed(const Extension& extension, const Points& by_points,
 
 Points Carry::transpose(const Points& by_points) const {
   Points result = by_points;
-  add_transposed(films_, by_points, result);
-  add_transposed(caps_, by_points, result);
+  if (slides_) {
+    // Caps follow films that slide.
+    add_transposed(caps_, by_points, result);
+    const Points by_films = result;
+    add_transposed(films_, by_films, result);
+  } else {
+    add_transposed(films_, by_points, result);
+    add_transposed(caps_, by_points, result);
+  }
   for (std::size_t v = 0; v < reference_.size(); ++v) {
     if (stands_on_curves_[v] == 0) {
       result[v].setZero();
@@ -194,25 +297,57 @@ Points Carry::transpose(const Points& by_points) const {
 
 Points Carry::rates(const Points& rim_rates) const {
   Points result = rim_rates;
-  apply(films_, rim_rates, result);
-  apply(caps_, rim_rates, result);
+  apply(films_, result);
+  apply(caps_, result);
   return result;
 }
 
 Points Carry::at(const Points& rim_moves, double fraction) const {
-  Points moves = rim_moves;
-  for (Vec3& move : moves) {
-    move *= fraction;
-  }
-  Points result = reference_;
+  Points moves(reference_.size(), Vec3::Zero());
   for (std::size_t v = 0; v < reference_.size(); ++v) {
     if (stands_on_curves_[v] != 0) {
-      result[v] += moves[v];
+      moves[v] = rim_moves[v] * fraction;
     }
   }
-  apply(films_, moves, result);
-  apply(caps_, moves, result);
+  apply(films_, moves);
+  apply(caps_, moves);
+  Points result = reference_;
+  for (std::size_t v = 0; v < reference_.size(); ++v) {
+    result[v] += moves[v];
+  }
   return result;
+}
+
+void Carry::follow_rates(Points& rates) const {
+  if (slides_) {
+    for (const int v : caps_.vertices) {
+      rates[v].setZero();
+    }
+    apply(caps_, rates);
+  }
+}
+
+void Carry::follow(Points& points) const {
+  if (slides_) {
+    Points moves(points.size());
+    for (std::size_t v = 0; v < points.size(); ++v) {
+      moves[v] = points[v] - reference_[v];
+    }
+    follow_rates(moves);
+    for (const int v : caps_.vertices) {
+      points[v] = reference_[v] + moves[v];
+    }
+  }
+}
+
+void Carry::fold_caps(Points& by_points) const {
+  if (slides_ && !by_points.empty()) {
+    const Points by_caps = by_points;
+    add_transposed(caps_, by_caps, by_points);
+    for (const int v : caps_.vertices) {
+      by_points[v].setZero();
+    }
+  }
 }
 
 }  // namespace meniscus::frozen

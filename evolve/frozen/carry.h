@@ -14,6 +14,9 @@ namespace meniscus::frozen {
 /// harmonic with positive weights (monotone: no vertex moves further than the
 /// rims do); on a flat cap it is harmonic with exact cotangents, which
 /// reproduces linear maps, so that the cap stays flat where its rim does.
+/// Vertices on plane walls move within them: there C is harmonic in the
+/// directions that walls leave. A face that films wet follows its rim to where
+/// that has slid, by follow().
 /// Immutable after construction; at() may run in several threads.
 class Carry {
  public:
@@ -40,6 +43,15 @@ class Carry {
   /// when all moves are zero.
   Points at(const Points& rim_moves, double fraction) const;
 
+  /// Puts the vertices inside caps where their rims, at `points`, have them:
+  /// X of caps, but from rims that have slid on walls.
+  void follow(Points& points) const;
+
+  /// follow() for rates of all vertices, and transposed: a gradient by the
+  /// vertices that caps follow, zero inside caps.
+  void follow_rates(Points& rates) const;
+  void fold_caps(Points& by_points) const;
+
   /// How fast at(., 1) moves with the rim vertices' own rates.
   Points rates(const Points& rim_rates) const;
 
@@ -51,21 +63,29 @@ class Carry {
   struct Extension {
     std::vector<int> vertices;
     SparseMatrix outer;
+    /// Where walls take directions away: from the coordinates that are left to
+    /// the moves of all vertices, 3 a vertex; the factor is of those.
+    SparseMatrix ways;
     std::optional<SymmetricFactor> factor;
+
+    Eigen::MatrixXd solve(const Eigen::MatrixXd& right) const;
   };
   void add_stands_on_frame(const films::FilmComplex& reference, int vertex,
                            int frame);
   static Extension extend(const films::FilmComplex& reference,
                           films::VertexKind kind,
                           const std::vector<int>& order);
-  static void apply(const Extension& extension, const Points& moves,
-                    Points& result);
+  static void bind_to_walls(const films::FilmComplex& reference,
+                            const SparseMatrix& inner, Extension& extension);
+  /// Adds to `moves` those of the extension's vertices.
+  static void apply(const Extension& extension, Points& moves);
   static void add_transposed(const Extension& extension,
                              const Points& by_points, Points& result);
 
   Points reference_;
   std::vector<std::vector<Stand>> stands_;
   std::vector<char> stands_on_curves_;  // per vertex
+  bool slides_ = false;                 // on walls, some of it
   Extension films_;
   Extension caps_;
 };

@@ -40,6 +40,12 @@ const Named* find_named(const std::vector<Named>& list,
   return found == list.end() ? nullptr : &*found;
 }
 
+/// How fast the energy per wetted area of a cap's wall changes.
+double wall_tension(const films::FilmSystem& rates, const std::string& cap) {
+  const films::CapSpec* moving = find_named(rates.caps, cap);
+  return moving != nullptr && moving->wall ? moving->wall->tension : 0.0;
+}
+
 }  // namespace
 
 void FilmModel::Impl::check_response(const FilmCovector& response) const {
@@ -75,8 +81,9 @@ FilmModel::Impl::AtRest FilmModel::Impl::at_rest(
     film.pressure[b] =
         state.report.bodies[static_cast<std::size_t>(b)].pressure;
   }
-  const Points there =
+  Points there =
       energy->space().moved(film.base, film.directions, state.heights);
+  carry->follow(there);
   const double off = (flat(there) - flat(state.points)).cwiseAbs().maxCoeff();
   if (!(off <= kSamePlace * bounding_diagonal(state.points))) {
     throw InvalidInput(fmt::format(
@@ -118,7 +125,8 @@ std::vector<FilmGradient> FilmModel::transpose(
                             film.pressure);
   std::vector<FilmGradient> result;
   result.reserve(responses.size());
-  for (const FilmCovector& response : responses) {
+  for (FilmCovector response : responses) {
+    impl_->carry->fold_caps(response.points);
     const FilmAdjoint::Result found = adjoint.transpose(response);
     result.push_back({impl_->rim_gradients(found.base), found.tensions,
                       found.volumes, found.pressures});
@@ -143,6 +151,7 @@ std::vector<Points> FilmModel::tangents(
                             film.pressure);
   for (const films::FilmSystem& moving : rates) {
     result.push_back(adjoint.tangent(impl_->rates_of(system, moving)));
+    impl_->carry->follow_rates(result.back());
   }
   return result;
 }
@@ -185,6 +194,9 @@ FilmAdjoint::Rates FilmModel::Impl::rates_of(
         find_named(rates.films, complex.surfaces[s].name);
     if (film != nullptr && complex.surfaces[s].liquid) {
       result.tensions[static_cast<Eigen::Index>(s)] = film->tension;
+    } else if (complex.surfaces[s].wetted) {
+      result.tensions[static_cast<Eigen::Index>(s)] =
+          wall_tension(rates, complex.surfaces[s].name);
     }
   }
   for (Eigen::Index b = 0; b < bodies; ++b) {
@@ -217,6 +229,9 @@ double FilmModel::rate(const FilmGradient& gradient,
         find_named(rates.films, impl_->complex.surfaces[s].name);
     if (film != nullptr && impl_->complex.surfaces[s].liquid) {
       sum += gradient.tensions[static_cast<Eigen::Index>(s)] * film->tension;
+    } else if (impl_->complex.surfaces[s].wetted) {
+      sum += gradient.tensions[static_cast<Eigen::Index>(s)] *
+             wall_tension(rates, impl_->complex.surfaces[s].name);
     }
   }
   for (std::size_t b = 0; b < impl_->complex.bodies.size(); ++b) {

@@ -33,7 +33,8 @@ struct RimGradient {
 /// equilibrium.
 struct FilmGradient {
   std::vector<RimGradient> rims;  // one per curve of the model
-  VectorX tensions;   // one per label; 0 for caps and for tension fields
+  VectorX tensions;   // one per label, of walls too; 0 for caps that wet none
+                      // and for tension fields
   VectorX volumes;    // by the volume asked for, one per body; 0 if none is
   VectorX pressures;  // by the pressure asked for; 0 where a volume is
 };

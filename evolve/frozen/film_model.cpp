@@ -19,6 +19,7 @@
 #include "evolve/settle/find_equilibrium.h"
 #include "evolve/start/start_complex.h"
 #include "evolve/start/start_edge.h"
+#include "evolve/start/wetted_faces.h"
 
 namespace meniscus::frozen {
 
@@ -52,6 +53,26 @@ films::FilmTargets blend(const films::FilmTargets& from,
   return result;
 }
 
+/// Films meet a wall at an angle between 0 and pi where its energy lies between
+/// theirs, to either side of 0 (Young).
+void check_wetting(const films::FilmSystem& system, const films::CapSpec& cap) {
+  const std::vector<std::string> curves = cap.curves();
+  for (const films::FilmSpec& film : system.films) {
+    const bool ends = std::any_of(
+        film.curves.begin(), film.curves.end(), [&](const std::string& name) {
+          return std::find(curves.begin(), curves.end(), name) != curves.end();
+        });
+    if (ends && !film.tension_field &&
+        !(std::abs(cap.wall->tension) < film.tension)) {
+      throw InvalidInput(fmt::format(
+          "the wall of '{}' has {} of energy per area where film '{}' has {}; "
+          "a film meets a wall whose energy is less than its own, to either "
+          "side of 0",
+          cap.name, cap.wall->tension, film.name, film.tension));
+    }
+  }
+}
+
 /// Throws InvalidInput for numbers that no liquid can follow.
 void check_numbers(const films::FilmSystem& system) {
   for (const films::FilmSpec& film : system.films) {
@@ -59,6 +80,11 @@ void check_numbers(const films::FilmSystem& system) {
       throw InvalidInput(
           fmt::format("the tension of film '{}' must be above 0, found {}",
                       film.name, film.tension));
+    }
+  }
+  for (const films::CapSpec& cap : system.caps) {
+    if (cap.wall) {
+      check_wetting(system, cap);
     }
   }
   for (const films::BodySpec& body : system.bodies) {
@@ -89,6 +115,9 @@ films::FilmTargets FilmModel::Impl::targets_of_system(
     const films::FilmSystem& system) const {
   films::FilmTargets result = targets;
   for (std::size_t s = 0; s < complex.surfaces.size(); ++s) {
+    if (complex.surfaces[s].wetted) {
+      result.tension[s] = wall_of(system, static_cast<int>(s)).tension;
+    }
     if (!complex.surfaces[s].liquid) {
       continue;
     }
@@ -129,6 +158,25 @@ films::FilmTargets FilmModel::Impl::targets_of_system(
     body.pressure = spec->pressure;
   }
   return result;
+}
+
+/// The wall that a design gives to a wetted face: in the place that it has.
+const films::PlaneWall& FilmModel::Impl::wall_of(
+    const films::FilmSystem& system, int surface) const {
+  const films::ComplexSurface& face = complex.surfaces[surface];
+  const auto cap = std::find_if(
+      system.caps.begin(), system.caps.end(),
+      [&](const films::CapSpec& c) { return c.name == face.name; });
+  const films::LevelSet& plane =
+      complex.level_sets[complex.constraint_sets[face.constraints].front()];
+  if (cap == system.caps.end() || !cap->wall ||
+      start::plane_formula(*cap->wall).text() != plane.formula.text()) {
+    throw InvalidInput(fmt::format(
+        "the design moves the wall of '{}'; its place belongs to the frozen "
+        "model: freeze another one",
+        face.name));
+  }
+  return *cap->wall;
 }
 
 /// The fields of the design are those that were frozen.
@@ -200,14 +248,15 @@ void FilmModel::Impl::find_reference(const films::FilmSystem& initial,
     settle_reference(*options.start, options.edge, 0, initial, options, settle);
     return;
   }
-  const int halvings = start::start_halvings(initial, options.edge);
+  const int halvings =
+      options.at_rest ? 0 : start::start_halvings(initial, options.edge);
   find_reference_from(std::ldexp(options.edge, halvings), halvings, initial,
                       options, settle);
   const auto tears = [this] {
     return reference.failure &&
            reference.failure->kind != FailureKind::FilmUnstable;
   };
-  if (!tears() || initial.keep_facets) {
+  if (!tears() || initial.keep_facets || options.at_rest) {
     return;
   }
   // Coarse facets may fold where rims are not much larger than they, and any
@@ -248,15 +297,16 @@ void FilmModel::Impl::find_reference_from(double edge, int halvings,
                    options, settle);
 }
 
-void FilmModel::Impl::settle_reference(films::FilmComplex first, double edge,
-                                       int halvings,
+void FilmModel::Impl::settle_reference(const films::FilmComplex& first,
+                                       double edge, int halvings,
                                        const films::FilmSystem& initial,
                                        const FilmModelOptions& options,
                                        const settle::SettleOptions& settle) {
   Monitor& monitor =
       options.monitor != nullptr ? *options.monitor : silent_monitor();
   start_edge = edge;
-  complex = std::move(first);
+  const bool wets = start::has_wetted_faces(first);
+  complex = start::open_wetted_faces(first);
   parents.clear();
   near_parents = 0;
   refinements = 0;
@@ -268,34 +318,44 @@ void FilmModel::Impl::settle_reference(films::FilmComplex first, double edge,
     find.edge.reset();
     find.refinements = halvings;
   }
-  reference = settle::find_equilibrium(complex, find);
+  if (options.at_rest) {
+    settle_level(settle);
+  } else {
+    reference = settle::find_equilibrium(complex, find);
+  }
+  if (wets && !reference.failure) {
+    start::close_wetted_faces(complex, options.edge);
+    reference.points = complex.mesh.points;
+    energy.reset();
+  }
   meshed = complex.mesh;
   meshed_complex = complex;
   refine_and_settle(options.refinements, !initial.keep_facets, settle);
+}
+
+void FilmModel::Impl::settle_level(const settle::SettleOptions& settle) {
+  energy.emplace(complex);
+  reference =
+      settle::settle_past_saddles(*energy, complex, energy::targets_of(complex),
+                                  complex.mesh.points, settle);
+  complex.mesh.points = reference.points;
 }
 
 void FilmModel::Impl::refine_and_settle(int levels, bool may_groom,
                                         const settle::SettleOptions& settle) {
   Monitor& monitor =
       settle.monitor != nullptr ? *settle.monitor : silent_monitor();
-  const auto settle_level = [&] {
-    energy.emplace(complex);
-    reference = settle::settle_past_saddles(*energy, complex,
-                                            energy::targets_of(complex),
-                                            complex.mesh.points, settle);
-    complex.mesh.points = reference.points;
-  };
   for (int level = 0; level < levels; ++level) {
     monitor.progress({"film", fmt::format("refinement {}", level + 1), 0.6});
     refine_once(level);
     if (reference.failure) {
       continue;
     }
-    settle_level();
+    settle_level(settle);
     // Where the coarser film was far from this one, new vertices came to it
     // aslant: slivers, whose modes are wrong at any length of edge.
     if (may_groom && !reference.failure && groom::spread_slivers(complex)) {
-      settle_level();
+      settle_level(settle);
     }
   }
 }
@@ -330,6 +390,9 @@ settle::FilmState FilmModel::Impl::settle_in_parts(
   }
   if (state.failure) {
     state.report.verdict = state.failure->message;
+  }
+  if (!state.points.empty()) {
+    carry->follow(state.points);
   }
   state.report.iterations = iterations;
   return state;

@@ -33,6 +33,9 @@ struct FilmModelOptions {
   /// A settled film of the system to begin from in the place of first facets,
   /// at about `edge`: meshed_at() of another model. On loan; null: none.
   const films::FilmComplex* start = nullptr;
+  /// The first facets are a film at rest: Newton along normals alone, so that
+  /// vertices stay where they are in the film.
+  bool at_rest = false;
   Monitor* monitor = nullptr;
 };
 

@@ -39,6 +39,8 @@ struct FilmModel::Impl {
   };
 
   films::FilmTargets targets_of_system(const films::FilmSystem& system) const;
+  const films::PlaneWall& wall_of(const films::FilmSystem& system,
+                                  int surface) const;
   void check_fields(const films::FilmSystem& system) const;
   std::vector<curves::Curve> curves_of_system(
       const films::FilmSystem& system) const;
@@ -52,10 +54,12 @@ struct FilmModel::Impl {
                            const FilmModelOptions& options,
                            const settle::SettleOptions& settle);
   /// The same from `first`, of that many halvings to come.
-  void settle_reference(films::FilmComplex first, double edge, int halvings,
-                        const films::FilmSystem& initial,
+  void settle_reference(const films::FilmComplex& first, double edge,
+                        int halvings, const films::FilmSystem& initial,
                         const FilmModelOptions& options,
                         const settle::SettleOptions& settle);
+  /// The complex as it is, along its normals.
+  void settle_level(const settle::SettleOptions& settle);
   /// Nested refinements of the settled complex, settled one by one.
   /// `may_groom`: their vertices may be spread anew where facets are slivers.
   void refine_and_settle(int levels, bool may_groom,

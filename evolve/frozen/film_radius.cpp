@@ -59,7 +59,7 @@ Mat3 power_of(const Mat3& m, int n) {
   return result;
 }
 
-/// Facets of films whose corners are all smooth and free.
+/// Facets of films whose corners are all smooth and free, on no wall.
 std::vector<int> smooth_facets(const energy::FilmEnergy& energy) {
   const energy::FilmSpace& space = energy.space();
   std::vector<int> result;
@@ -67,7 +67,7 @@ std::vector<int> smooth_facets(const energy::FilmEnergy& energy) {
     const Triangle& t = energy.facets()[f];
     const auto facet = static_cast<int>(f);
     if (energy.is_liquid(facet) && std::all_of(t.begin(), t.end(), [&](int v) {
-          return space.rank(v) == 1;
+          return space.rank(v) == 1 && space.line_ends(v)[0] < 0;
         })) {
       result.push_back(facet);
     }

@@ -1,6 +1,7 @@
 #include "evolve/start/disk_fill.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -21,6 +22,16 @@ using Vec2 = Eigen::Vector2d;
 
 double cross2(const Vec2& a, const Vec2& b) {
   return a.x() * b.y() - a.y() * b.x();
+}
+
+/// On which sides of each segment the other's ends lie: both negative where
+/// they cross, one 0 where an end lies on the other's line.
+std::array<double, 2> sides(const Vec2& a, const Vec2& b, const Vec2& c,
+                            const Vec2& d) {
+  const Vec2 first = b - a;
+  const Vec2 second = d - c;
+  return {cross2(first, c - a) * cross2(first, d - a),
+          cross2(second, a - c) * cross2(second, b - c)};
 }
 
 /// The rim's points in its plane, counter-clockwise.
@@ -74,10 +85,10 @@ class EarClipper {
         }
       }
       if (!(shape_[best] > 0.0) && left > 3) {
-        const Vec3& p = points_[ring_[best]];
+        const Vec3& p = points_[crossing(ring_[best])];
         throw MeshError(fmt::format(
-            "a closed curve crosses itself near ({:.6g}, {:.6g}, {:.6g}) and "
-            "cannot be filled",
+            "seen along the normal of its plane, a closed curve crosses itself "
+            "or another near ({:.6g}, {:.6g}, {:.6g}) and cannot be filled",
             p.x(), p.y(), p.z()));
       }
       facets.push_back(
@@ -94,6 +105,26 @@ class EarClipper {
   }
 
  private:
+  /// The first point of the ring whose side meets another; `otherwise` where
+  /// none does.
+  int crossing(int otherwise) const {
+    const auto at = [&](std::size_t i) { return ring_[i % ring_.size()]; };
+    for (std::size_t i = 0; i < ring_.size(); ++i) {
+      for (std::size_t j = i + 2; j < ring_.size(); ++j) {
+        const int a = at(i);
+        const int b = at(i + 1);
+        const int c = at(j);
+        const int d = at(j + 1);
+        const auto [of_second, of_first] =
+            sides(flat_[a], flat_[b], flat_[c], flat_[d]);
+        if (of_second < 0.0 && of_first < 0.0) {
+          return a;
+        }
+      }
+    }
+    return otherwise;
+  }
+
   // Smallest angle of the ear at i; 0 when it is none.
   double shape(int i) const {
     const int a = previous_[i];
@@ -194,20 +225,15 @@ class HoleBridges {
   }
 
   bool crosses(int a, int b, const std::vector<int>& loop) const {
-    const Vec2& p = flat_[a];
-    const Vec2& q = flat_[b];
     for (std::size_t k = 0; k < loop.size(); ++k) {
       const int c = loop[k];
       const int d = loop[(k + 1) % loop.size()];
       if (c == a || c == b || d == a || d == b) {
         continue;
       }
-      const double c_side = cross2(q - p, flat_[c] - p);
-      const double d_side = cross2(q - p, flat_[d] - p);
-      const Vec2 side = flat_[d] - flat_[c];
-      const double p_side = cross2(side, p - flat_[c]);
-      const double q_side = cross2(side, q - flat_[c]);
-      if (c_side * d_side <= 0.0 && p_side * q_side <= 0.0) {
+      const auto [of_second, of_first] =
+          sides(flat_[a], flat_[b], flat_[c], flat_[d]);
+      if (of_second <= 0.0 && of_first <= 0.0) {
         return true;
       }
     }

@@ -25,6 +25,7 @@
 #include "evolve/start/loft.h"
 #include "evolve/start/raise_disks.h"
 #include "evolve/start/solid_start.h"
+#include "evolve/start/wetted_faces.h"
 
 namespace meniscus::start {
 
@@ -83,6 +84,7 @@ class StartBuilder {
       films::require_body(system_, cap.name);
     }
     films::orient_bodies(result_);
+    add_walls();
     add_fields();
     const std::vector<double> tensions =
         energy::tensions_at(result_, result_.mesh.points);
@@ -460,6 +462,32 @@ class StartBuilder {
   }
 
   void add_branch(const films::FilmSpec& film, int label);
+
+  void add_walls() {
+    for (std::size_t k = 0; k < system_.caps.size(); ++k) {
+      const films::CapSpec& cap = system_.caps[k];
+      if (!cap.wall) {
+        continue;
+      }
+      if (cap.start || cap.ruled || !cap.inner.empty()) {
+        throw InvalidInput(fmt::format(
+            "solid '{}' has a wall; faces that films wet are flat disks",
+            cap.name));
+      }
+      std::vector<std::vector<int>> rims;
+      for (const std::string& name : cap.curves()) {
+        rims.push_back(rims_.at(name).ids);
+        if (shared_.shares(rims_.at(name).curve)) {
+          throw InvalidInput(fmt::format(
+              "curve '{}' shares a side with another curve and cannot slide on "
+              "the wall of '{}'",
+              name, cap.name));
+        }
+      }
+      slide_on_wall(system_, cap, static_cast<int>(system_.films.size() + k),
+                    rims, result_);
+    }
+  }
 
   void add_fields() {
     for (const films::FieldSpec& field : system_.fields) {

@@ -13,6 +13,7 @@
 #include "pipeline/case_data/case_responses.h"
 #include "pipeline/case_data/case_sides.h"
 #include "pipeline/case_data/case_values.h"
+#include "pipeline/case_data/case_wetted.h"
 #include "pipeline/case_data/response_entries.h"
 #include "pipeline/case_data/response_kinds.h"
 
@@ -186,6 +187,9 @@ films::FilmSystem films_of(const Case& input, const CaseValues& values) {
   }
   for (const CapEntry& cap : input.caps) {
     system.caps.push_back(cap.spec);
+    if (cap.wetted) {
+      system.caps.back().wall = wall_of(input, cap, values);
+    }
   }
   for (const BodyEntry& body : input.bodies) {
     films::BodySpec spec{.name = body.name,
@@ -320,6 +324,7 @@ EvaluatedCase evaluate(const Case& input, const VectorX& design,
     }
     check_sides(input, result.film_system, values);
     check_places(input, result, values);
+    check_on_walls(input, result.film_system, values);
   }
   return result;
 }

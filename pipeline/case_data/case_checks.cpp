@@ -371,16 +371,16 @@ void check_fillets(const Case& input, const EvaluatedCase& initial,
 /// The case's numbers at the initial design and, one variable at a time, at
 /// the ends of the bounds.
 void check_numbers(const Case& input, CaseProblems& problems) {
-  const auto at = [&](const VectorX& design) {
+  const auto at = [&](const VectorX& design, const std::string& which) {
     std::vector<std::string> found;
     EvaluatedCase inputs = evaluate(input, design, found);
     for (const std::string& problem : found) {
-      problems.add_text(problem);
+      problems.add_text(problem + which);
     }
     return inputs;
   };
   const VectorX initial = initial_design(input);
-  const EvaluatedCase inputs = at(initial);
+  const EvaluatedCase inputs = at(initial, "");
   if (!problems.empty()) {
     return;
   }
@@ -392,7 +392,9 @@ void check_numbers(const Case& input, CaseProblems& problems) {
     for (const double end : {input.design[k].lower, input.design[k].upper}) {
       VectorX design = initial;
       design[static_cast<Eigen::Index>(k)] = end;
-      const EvaluatedCase there = at(design);
+      const EvaluatedCase there =
+          at(design, fmt::format(" (with '{}' at the end of its bounds, {:g})",
+                                 input.design[k].name, end));
       if (problems.empty()) {
         check_merged(input, inputs, there, problems);
         check_fixed_materials(input, inputs, there, problems);
@@ -493,6 +495,7 @@ void check_case(const Case& input, CaseProblems& problems) {
   if (problems.empty()) {
     check_liquid(input, problems);
     check_use(input, problems);
+    check_wetted_walls(input, problems);
     check_inner_surfaces(input, problems);
     check_numbers(input, problems);
   }

@@ -20,6 +20,9 @@ void nest_film(Resolution& resolution, SourceLine line, CaseProblems& problems);
 /// Bodies close: each curve of a body's surfaces bounds two of them.
 void check_bodies(const Case& input, CaseProblems& problems);
 
+/// Films with a thickness are held on curves: their rims are square to them.
+void check_wetted_walls(const Case& input, CaseProblems& problems);
+
 /// When nothing is wrong so far: the numbers at the initial design and at both
 /// ends of every design variable, and warnings of what serves nothing.
 void check_case(const Case& input, CaseProblems& problems);
@@ -29,6 +32,10 @@ void check_case(const Case& input, CaseProblems& problems);
 /// that overlap.
 void check_start(const Case& input, const EvaluatedCase& inputs,
                  CaseProblems& problems);
+
+/// The line of the film, solid or body that a message of the start names
+/// first; 0: none.
+SourceLine line_of_start(const Case& input, const std::string& message);
 
 /// Some film or solid, or one of those that enclose a body, is of facets.
 bool has_facets(const Case& input);

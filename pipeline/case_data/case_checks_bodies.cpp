@@ -151,6 +151,51 @@ void check_caps(const Case& input, CaseProblems& problems) {
   }
 }
 
+/// One film, of one tension, ends at each curve of a wetted face, which holds
+/// nothing else.
+void check_wetted_curve(const Case& input, const CapEntry& cap,
+                        const std::string& curve, CaseProblems& problems) {
+  std::vector<std::string> ends;
+  std::size_t films = 0;
+  for (const FilmEntry& film : input.films) {
+    if (!is_among(film.spec.curves, curve)) {
+      continue;
+    }
+    ends.push_back(film.spec.name);
+    ++films;
+    if (film.tension.of_place) {
+      problems.add(cap.line,
+                   fmt::format("film '{}' slides on the wall of '{}', and its "
+                               "tension depends on the place; give it a number",
+                               film.spec.name, cap.spec.name));
+    }
+  }
+  for (const CapEntry& other : input.caps) {
+    if (is_among(other.spec.curves(), curve) && &other != &cap) {
+      ends.push_back(other.spec.name);
+    }
+  }
+  if (films != 1 || ends.size() != 1) {
+    problems.add(
+        cap.line,
+        fmt::format("solid '{}' is wetted at curve '{}', where {} end; "
+                    "expected one film there and no other solid",
+                    cap.spec.name, curve,
+                    ends.empty() ? "no films"
+                                 : fmt::format("{}", fmt::join(ends, ", "))));
+  }
+}
+
+void check_wetted(const Case& input, CaseProblems& problems) {
+  for (const CapEntry& cap : input.caps) {
+    if (cap.wetted) {
+      for (const std::string& curve : cap.spec.curves()) {
+        check_wetted_curve(input, cap, curve, problems);
+      }
+    }
+  }
+}
+
 /// All names that the body's shape hangs on are known; else the reader has
 /// told so, and what follows from it is no news.
 bool names_are_known(const Case& input, const BodyEntry& body) {
@@ -199,8 +244,25 @@ void check_closed(const Case& input, const BodyEntry& body,
 
 }  // namespace
 
+void check_wetted_walls(const Case& input, CaseProblems& problems) {
+  for (const WallEntry& wall : input.walls) {
+    const std::vector<std::string> curves = curves_of_wall(input, wall);
+    for (const CapEntry& cap : input.caps) {
+      if (cap.wetted && is_among(curves, cap.spec.curve)) {
+        problems.add(
+            wall.line,
+            fmt::format("walls.{} is of a film that slides on the wall of "
+                        "'{}', which the rim of a film with a thickness would "
+                        "leave; make '{}' a cap, or fill a body instead",
+                        wall.name, cap.spec.name, cap.spec.name));
+      }
+    }
+  }
+}
+
 void check_bodies(const Case& input, CaseProblems& problems) {
   check_caps(input, problems);
+  check_wetted(input, problems);
   std::map<std::string, std::vector<std::string>> bodies_of;
   for (const BodyEntry& body : input.bodies) {
     check_closed(input, body, problems);

@@ -9,7 +9,6 @@
 #include "evolve/start/start_complex.h"
 #include "evolve/start/start_edge.h"
 #include "pipeline/case_data/case_checks.h"
-#include "pipeline/case_data/film_start.h"
 
 namespace meniscus::case_data {
 
@@ -36,6 +35,26 @@ bool has_facets(const Case& input, const BodyEntry& body) {
                      [&](const CapEntry& cap) {
                        return cap.is_file && encloses(cap.spec.name);
                      });
+}
+
+SourceLine line_of_start(const Case& input, const std::string& message) {
+  SourceLine line = 0;
+  const auto look = [&](const std::string& name, SourceLine at) {
+    const std::size_t found = message.find("'" + name + "'");
+    line = line == 0 && found != std::string::npos ? at : line;
+  };
+  for (const FilmEntry& film : input.films) {
+    look(film.spec.name, film.line);
+  }
+  for (const CapEntry& cap : input.caps) {
+    look(cap.spec.name, cap.line);
+  }
+  for (const BodyEntry& body : input.bodies) {
+    if (message.find("body '" + body.name + "'") != std::string::npos) {
+      line = body.enclosure_line;
+    }
+  }
+  return line;
 }
 
 namespace {

@@ -228,11 +228,12 @@ void check_meetings(const Case& input, const films::FilmSystem& system,
     const Vec3& at = meeting.place;
     const std::string face =
         face_with(system, input.curves[a].name, input.curves[b].name);
+    const std::string of_second = where(input.curves[b], values);
     values.problems().push_back(fmt::format(
         "{}: curves '{}' and '{}' meet near ({:.4g}, {:.4g}, {:.4g}){}; {}",
         place(input, input.curves[b].line), input.curves[a].name,
         input.curves[b].name, at.x(), at.y(), at.z(),
-        where(input.curves[b], values),
+        of_second.empty() ? where(input.curves[a], values) : of_second,
         face.empty() ? "films join where they name the same curve, other "
                        "curves must keep apart"
                      : fmt::format("these rims of '{}' have merged: keep them "
@@ -353,6 +354,9 @@ void check_nesting(const Case& input, const films::FilmSystem& system,
   }
   NestingCheck check(input, initial, system.curves, design, problems);
   for (const films::CapSpec& cap : system.caps) {
+    if (cap.wall) {
+      continue;  // films slide there, and curves hold nothing
+    }
     check.run(cap);
   }
 }

@@ -110,8 +110,16 @@ struct FilmEntry {
   SourceLine line = 0;
 };
 
+/// The plane wall of a face that films wet, and the angle that they meet it at,
+/// in the body.
+struct WettedWall {
+  QuantityVector at, normal;
+  Quantity contact_angle;  // [rad]
+};
+
 struct CapEntry {
-  films::CapSpec spec;
+  films::CapSpec spec;  // wall filled in by evaluate()
+  std::optional<WettedWall> wetted;
   bool is_file = false;  // of facets or a STEP solid; else a flat disk
   SourceLine line = 0;
 };

@@ -174,6 +174,10 @@ void CaseValues::add_problem(const Quantity& quantity, double value,
 }
 
 std::string CaseValues::where_text(const std::vector<char>& used) const {
+  constexpr std::ptrdiff_t kMost = 8;  // more are a table, not a hint
+  if (std::count(used.begin(), used.end(), 1) > kMost) {
+    return {};
+  }
   std::string text;
   for (std::size_t k = 0; k < used.size(); ++k) {
     if (used[k] != 0) {

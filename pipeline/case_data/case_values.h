@@ -70,7 +70,8 @@ class CaseValues {
   /// Its gradient there (of values only).
   loads::VectorOfPlace slope(const PlaceQuantity& quantity) const;
 
-  /// " where support_x = 3, gap = 2"; nothing for plain numbers.
+  /// " where support_x = 3, gap = 2"; nothing for plain numbers, and for more
+  /// than eight names.
   template <class... Quantities>
   std::string where(const Quantities&... quantities) const {
     std::vector<char> used(values_.size(), 0);

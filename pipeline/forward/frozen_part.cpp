@@ -9,9 +9,9 @@
 #include "core/timer.h"
 #include "evolve/energy/constrained_hessian.h"
 #include "mesh_tet/quadratic.h"
-#include "pipeline/case_data/film_advice.h"
-#include "pipeline/case_data/film_options.h"
-#include "pipeline/case_data/film_start.h"
+#include "pipeline/case_films/film_advice.h"
+#include "pipeline/case_films/film_options.h"
+#include "pipeline/case_films/film_start.h"
 #include "pipeline/forward/fillets.h"
 #include "pipeline/forward/walls.h"
 #include "pipeline/forward/work_estimate.h"
@@ -41,10 +41,10 @@ void advise(const case_data::EvaluatedCase& inputs,
   if (!(options.edge_factor > 1.0)) {
     const StageMeter meter;
     Failure& failure = *part.start.failure;
-    const std::string advice = case_data::tried_advice(
+    const std::string advice = case_films::tried_advice(
         part.input, inputs, failure,
         {.edge = inputs.fea_edge,
-         .refinements = case_data::film_refinements(part.input),
+         .refinements = case_films::film_refinements(part.input),
          .findings = part.findings,
          .monitor = &monitor});
     failure.message += advice.empty() ? "" : "; " + advice;
@@ -64,10 +64,10 @@ bool freeze_film(const case_data::EvaluatedCase& inputs,
                                   ? "settling the start of " + text_of(work)
                                   : std::string("settling the start")});
   require_work(work, edge);
-  part.film.emplace(case_data::freeze_films(
+  part.film.emplace(case_films::freeze_films(
       part.input, inputs,
       {.edge = edge,
-       .refinements = case_data::film_refinements(part.input),
+       .refinements = case_films::film_refinements(part.input),
        .monitor = &monitor}));
   const settle::FilmState& film = part.film->reference();
   start.film = film.report;
@@ -303,7 +303,7 @@ bool fill_film(const case_data::EvaluatedCase& inputs,
 bool fill_other_facets(const case_data::EvaluatedCase& inputs,
                        const ForwardModelOptions& options, FrozenPart& part) {
   constexpr double kSmaller = 0.97;
-  if (case_data::is_of_films(*part.start.failure)) {
+  if (case_films::is_of_films(*part.start.failure)) {
     return false;
   }
   std::vector<double> edges;
@@ -326,8 +326,8 @@ bool fill_other_facets(const case_data::EvaluatedCase& inputs,
     const std::string prevented =
         what_prevents([&] { filled = fill_film(inputs, own, anew); });
     if (!prevented.empty() || !filled ||
-        !case_data::is_same_film(part.film->reference().report,
-                                 anew.film->reference().report)) {
+        !case_films::is_same_film(part.film->reference().report,
+                                  anew.film->reference().report)) {
       part.start.seconds = anew.start.seconds;
       part.start.operations = anew.start.operations;
       return false;

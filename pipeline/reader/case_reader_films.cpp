@@ -1,5 +1,6 @@
 /// Films and solids: from curves, facets in the case, and files.
 #include <algorithm>
+#include <numbers>
 #include <set>
 
 #include <fmt/format.h>
@@ -21,6 +22,8 @@ std::vector<std::string> curve_names(const case_data::Case& result) {
   }
   return names;
 }
+
+constexpr double kRightAngle = std::numbers::pi / 2.0;
 
 struct FilmRow {
   const char* name;
@@ -88,6 +91,10 @@ const std::vector<SolidRow>& solid_kinds() {
        {"ring",
         {{"curve", "inner"}, {}},
         "band between two curves, flat where they lie in one plane"},
+       {"wetted",
+        {{"curve", "at", "normal"}, {"holes", "contact_angle"}},
+        "the face that a body wets on a plane wall: the film that begins at "
+        "its curve ends there and slides"},
        {"sides",
         {{"curves"}, {}},
         "the plane faces between the sides of two polygons"},
@@ -285,6 +292,25 @@ void read_rims(CaseContext& context, const CaseTable& table,
   }
 }
 
+/// Where films slide on a plane, which belongs to the frozen model.
+case_data::WettedWall read_wetted(CaseContext& context,
+                                  const CaseTable& table) {
+  case_data::WettedWall wall{
+      .at = table.vector_or_zero("at"),
+      .normal = table.vector_or_zero("normal"),
+      .contact_angle = table.quantity("contact_angle")
+                           .value_or(case_data::Quantity{
+                               .expression = Expression(kRightAngle),
+                               .line = table.line(),
+                               .key = table.path() + ".contact_angle"})};
+  for (const case_data::QuantityVector& vector : {wall.at, wall.normal}) {
+    for (const case_data::Quantity& quantity : vector) {
+      require_frozen(context, quantity, "a wall's place");
+    }
+  }
+  return wall;
+}
+
 case_data::CapEntry read_solid(CaseContext& context, const CaseTable& table,
                                const std::vector<std::string>& known,
                                case_data::Case& result) {
@@ -305,6 +331,9 @@ case_data::CapEntry read_solid(CaseContext& context, const CaseTable& table,
     read_sides(context, table, known, result, cap.spec);
   } else {
     read_rims(context, table, known, cap.spec);
+    if (*kind == "wetted") {
+      cap.wetted = read_wetted(context, table);
+    }
   }
   return cap;
 }
@@ -356,10 +385,13 @@ TableSpec solid_table() {
       "A solid surface, named so that loads find it",
       {{"kind", K::Choice, D::None, true, case_data::meanings_of(solid_kinds()),
         case_data::choices_of(solid_kinds()), "plate|pad|faces"},
-       {"curve", K::Name, D::None, false, "of cap, ring: its rim"},
+       {"curve", K::Name, D::None, false,
+        "of cap, ring: its rim; of wetted: where the film begins, in the wall; "
+        "it holds nothing"},
        {"inner", K::Name, D::None, false, "of ring: the rim of its hole"},
        {"holes", K::Names, D::None, false,
-        "of cap: curves in its plane that it leaves open"},
+        "of cap: curves in its plane that it leaves open; of wetted likewise, "
+        "where films begin"},
        {"curves", K::Names, D::None, false,
         "of sides: two polygons of as many corners; of file: those that its "
         "rims lie on; of flange: those in its top face that films grow from"},
@@ -370,7 +402,15 @@ TableSpec solid_table() {
        {"within", K::Constant, D::Length, false, "of file: as of films"},
        {"at", K::Vector, D::Length, false,
         "of boss: the middle of its seat; of flange: of its top face; of lug: "
-        "of its bore; of block: its own"},
+        "of its bore; of block: its own; of wetted: a point of the wall, the "
+        "same for every design"},
+       {"normal", K::Vector, std::nullopt, false,
+        "of wetted: of the wall, either way, any length but 0; the same for "
+        "every design"},
+       {"contact_angle", K::Quantity, D::Angle, false,
+        "of wetted: between film and wall, in the body, above 0 and below 180 "
+        "deg; 90 deg when left out. The wetted area has the energy -tension "
+        "cos(contact_angle) per area (Young)"},
        {"axis", K::Vector, std::nullopt, false,
         "of boss, flange: out of seat or top face; of lug: of its bore; of "
         "block: to its top, z when left out; of step: what it is turned about; "

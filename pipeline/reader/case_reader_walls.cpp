@@ -196,6 +196,18 @@ const case_data::StepSolidEntry* step_solid_at(const case_data::Case& result,
   return nullptr;
 }
 
+/// The face on which the film at this curve slides; empty: none.
+std::string wetted_at(const case_data::Case& result, const std::string& curve) {
+  for (const case_data::CapEntry& cap : result.caps) {
+    const std::vector<std::string> curves = cap.spec.curves();
+    if (cap.wetted &&
+        std::find(curves.begin(), curves.end(), curve) != curves.end()) {
+      return cap.spec.name;
+    }
+  }
+  return "";
+}
+
 class FilletReader {
  public:
   FilletReader(CaseContext& context, case_data::Case& result)
@@ -254,6 +266,13 @@ class FilletReader {
                       "whose faces stay as they are; round other curves, or "
                       "model the fillet in the file",
                       curve, solid->spec.name));
+      return false;
+    }
+    if (const std::string face = wetted_at(result_, curve); !face.empty()) {
+      add(table, line,
+          fmt::format("rounds curve '{}', from which the film slides on '{}' "
+                      "to its contact angle; round curves that hold films",
+                      curve, face));
       return false;
     }
     return true;

@@ -299,12 +299,12 @@ ResponsePartials film_area(const ResponseTask& task) {
   const VectorX areas = film.areas(task.fields.film_state->points);
   const std::vector<std::string>& labels = film.labels();
   ResponsePartials result;
-  result.film.areas = VectorX::Ones(areas.size());
-  if (!task.response.film.empty()) {
-    result.film.areas = VectorX::Unit(
-        areas.size(),
-        std::find(labels.begin(), labels.end(), task.response.film) -
-            labels.begin());
+  result.film.areas = VectorX::Zero(areas.size());
+  for (const films::FilmSpec& one : task.fields.inputs.film_system.films) {
+    if (task.response.film.empty() || task.response.film == one.name) {
+      result.film.areas[std::find(labels.begin(), labels.end(), one.name) -
+                        labels.begin()] = 1.0;
+    }
   }
   result.value = areas.dot(result.film.areas);
   return result;

@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "pipeline/case_data/film_options.h"
-#include "pipeline/case_data/film_start.h"
+#include "pipeline/case_films/film_options.h"
+#include "pipeline/case_films/film_start.h"
 #include "pipeline/forward/design_stages.h"
 #include "pipeline/forward/fillets.h"
 #include "pipeline/forward/walls.h"
@@ -52,11 +52,11 @@ const SettledFilm& ExportJob::film() {
           : case_data::evaluate(input_, case_data::initial_design(input_));
   const frozen::FilmModelOptions options{
       .edge = options_.edge.value_or(frozen.fea_edge),
-      .refinements = options_.edge ? 0 : case_data::film_refinements(input_),
+      .refinements = options_.edge ? 0 : case_films::film_refinements(input_),
       .monitor = options_.monitor};
   frozen::FilmModel model =
       options_.edge ? frozen::FilmModel::freeze(frozen.film_system, options)
-                    : case_data::freeze_films(input_, frozen, options);
+                    : case_films::freeze_films(input_, frozen, options);
   settle::FilmState state = model.reference();
   if (!options_.edge && !state.failure) {
     state = model.settle(inputs_.film_system, {.monitor = options_.monitor});

@@ -9,6 +9,7 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "evolve/datafile/fe_write.h"
+#include "evolve/start/wetted_faces.h"
 #include "io/gmsh_msh.h"
 #include "io/nastran_bdf.h"
 #include "io/obj.h"
@@ -56,9 +57,10 @@ void fe(ExportJob& job, const fs::path& file) {
                                  job.input().units.unit_of(Dimension::Energy)));
   comments.emplace_back(
       "'m 0; g' sets the pressures that 'hessian' asks for, and moves nothing");
-  write_file(file, datafile::fe_text(film.model.complex_at(
-                                         film.state, job.inputs().film_system),
-                                     comments));
+  // Surface Evolver has walls as it does: without faces, by line integrals.
+  const films::FilmComplex complex = start::open_wetted_faces(
+      film.model.complex_at(film.state, job.inputs().film_system));
+  write_file(file, datafile::fe_text(complex, comments));
 }
 
 void wall_step(ExportJob& job, const fs::path& file, bool faceted) {

@@ -1,6 +1,7 @@
 #include "pipeline/results/export_step.h"
 
 #include <algorithm>
+#include <map>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
@@ -152,6 +153,59 @@ films::FilmSystem for_smooth_films(films::FilmSystem system,
   return system;
 }
 
+/// The one rim of a surface, in the direction of its facets; empty where it has
+/// several.
+Points rim_of(const SurfaceMesh& mesh, int label) {
+  std::map<int, int> next;
+  std::map<Edge, int> runs;
+  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+    for (int k = 0; k < 3 && mesh.facet_label[f] == label; ++k) {
+      runs[{mesh.facets[f][k], mesh.facets[f][(k + 1) % 3]}] = 1;
+    }
+  }
+  for (const auto& [run, count] : runs) {
+    if (runs.count({run[1], run[0]}) == 0) {
+      next[run[0]] = run[1];
+    }
+  }
+  Points rim;
+  for (auto at = next.begin(); at != next.end();) {
+    rim.push_back(mesh.points[at->first]);
+    const int to = at->second;
+    next.erase(at);
+    at = next.find(to);
+  }
+  return next.empty() ? rim : Points();
+}
+
+/// The system held where its films rest in `model`: the curves that films slid
+/// from are splines through their rims, walls are caps. Throws InvalidInput for
+/// a wetted face with holes, whose rims could be taken for each other.
+films::FilmSystem held_where_it_slid(films::FilmSystem system,
+                                     const frozen::FilmModel& model) {
+  const SurfaceMesh mesh = model.fine_mesh(model.reference().points);
+  for (films::CapSpec& cap : system.caps) {
+    if (!cap.wall) {
+      continue;
+    }
+    Points rim = rim_of(mesh, mesh.label_of(cap.name));
+    if (rim.empty() || !cap.more.empty()) {
+      throw InvalidInput(fmt::format(
+          "the face that '{}' wets has several rims, which smooth STEP faces "
+          "cannot follow yet; write it with facets",
+          cap.name));
+    }
+    for (curves::Curve& curve : system.curves) {
+      if (curve.name == cap.curve) {
+        curve.shape = curves::Spline{std::move(rim)};
+        break;
+      }
+    }
+    cap.wall.reset();
+  }
+  return system;
+}
+
 /// Faces of STEP solids where the design has them.
 std::vector<solid::ExactFaces> exact_faces_of(const films::FilmSystem& system) {
   std::vector<solid::ExactFaces> result;
@@ -251,18 +305,18 @@ void export_step(const std::filesystem::path& file,
     step::write_step(file, solid::faceted_solid(mesh), names);
     return;
   }
-  model = settled(
-      for_smooth_films(system, model.boundary(model.reference().points)),
-      options.edge);
+  const films::FilmSystem held = held_where_it_slid(system, model);
+  model =
+      settled(for_smooth_films(held, model.boundary(model.reference().points)),
+              options.edge);
   mesh = rounded(model);
-  solid::FilmSolidInput input{
-      mesh, rims_of(system, model), {}, {}, options.edge};
-  for (const films::CapSpec& cap : system.caps) {
+  solid::FilmSolidInput input{mesh, rims_of(held, model), {}, {}, options.edge};
+  for (const films::CapSpec& cap : held.caps) {
     if (cap.solid >= 0) {
       input.exact.push_back(cap.name);
       continue;
     }
-    if (is_flat(cap, system, mesh)) {
+    if (is_flat(cap, held, mesh)) {
       input.caps.push_back(cap.name);
     }
     if (!cap.inner.empty() || cap.start || cap.ruled) {

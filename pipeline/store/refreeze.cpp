@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/json.h"
-#include "pipeline/case_data/film_start.h"
+#include "pipeline/case_films/film_start.h"
 
 namespace meniscus::store {
 
@@ -181,7 +181,7 @@ case_data::Case frozen_as_answered(
     model = at->model;
   }
   for (auto design = way.rbegin(); design != way.rend(); ++design) {
-    input = case_data::frozen_at(std::move(input), *design);
+    input = case_films::frozen_at(std::move(input), *design);
   }
   return input;
 }

@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "pipeline/case_data/film_advice.h"
-#include "pipeline/case_data/film_start.h"
+#include "pipeline/case_films/film_advice.h"
+#include "pipeline/case_films/film_start.h"
 #include "pipeline/store/stored_case.h"
 #include "pipeline/study/held_margins.h"
 
@@ -78,7 +78,7 @@ std::unique_ptr<StudyStage> StudyModels::stage_at(
         StageModel{.name = name, .reference = reference_});
   });
   lost_film_ = stage != nullptr && stage->failure() &&
-               case_data::is_of_films(*stage->failure());
+               case_films::is_of_films(*stage->failure());
   if (stage != nullptr && !stage->failure()) {
     return stage;
   }
@@ -123,7 +123,7 @@ bool StudyModels::go_on_at(store::Refreeze wanted) {
   log(fmt::format("a new model is frozen at evaluation {}: {}",
                   wanted.evaluation, wanted.reason));
   auto input = std::make_unique<case_data::Case>(
-      case_data::frozen_at(working(), wanted.design));
+      case_films::frozen_at(working(), wanted.design));
   input->study.max_evaluations = std::max(1, evaluations_left());
   input->study.earlier_evaluations =
       input_.study.max_evaluations - input->study.max_evaluations;
@@ -175,7 +175,7 @@ bool StudyModels::go_on_at_answer() {
 
 std::optional<forward::Evaluation> StudyModels::look_at(
     const VectorX& design, int evaluation, const std::string& reason) {
-  const case_data::Case input = case_data::frozen_at(input_, design);
+  const case_data::Case input = case_films::frozen_at(input_, design);
   const std::unique_ptr<StudyStage> stage =
       stage_at({.evaluation = evaluation,
                 .design = design,

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "pipeline/accuracy/mesh_sequence.h"
-#include "pipeline/case_data/film_start.h"
+#include "pipeline/case_films/film_start.h"
 #include "pipeline/store/refreeze.h"
 #include "pipeline/store/stored_case.h"
 #include "pipeline/study/study_records.h"
@@ -223,7 +223,7 @@ CoarseStage run_coarse_stage(const case_data::Case& input,
       if (!stage.stopped_early()) {
         return;
       }
-      working = case_data::frozen_at(std::move(working), *result.best);
+      working = case_films::frozen_at(std::move(working), *result.best);
       working.study.max_evaluations =
           std::max(1, working.study.max_evaluations - evaluations);
       asked.start.reset();

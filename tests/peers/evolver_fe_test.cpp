@@ -14,6 +14,8 @@
 #include "evolve/curves/curve.h"
 #include "evolve/datafile/fe_complex.h"
 #include "evolve/datafile/fe_write.h"
+#include "evolve/frozen/film_model.h"
+#include "evolve/start/wetted_faces.h"
 #include "tests/support/film_sums.h"
 #include "tests/support/not_here.h"
 #include "tests/support/temp_folder.h"
@@ -281,6 +283,26 @@ TEST_F(EvolverFe, AgreesOnCurvesAndTensionFields) {
   expect_near(measured.area, sums::area(complex), "area");
   complex.bodies[0].pressure.reset();
   expect_same(complex);
+}
+
+// A drop on a slanting plane: its wetted face is an integral along its rim.
+TEST_F(EvolverFe, AgreesOnAFilmThatSlides) {
+  films::FilmSystem system;
+  const Vec3 at(0.3, 0.1, 0.2);
+  const Vec3 normal(0.3, -0.2, 1.0);
+  system.curves = {{"begin", curves::Circle{at, normal, 1.0}}};
+  system.films = {{"dome", films::FilmKind::Disk, {"begin"}, 2.0}};
+  system.caps = {{"floor", "begin"}};
+  system.caps[0].wall = films::PlaneWall{at, normal, -0.8};
+  system.bodies = {{"drop", {"floor", "dome"}, 2.0, {}}};
+  const frozen::FilmModel model =
+      frozen::FilmModel::freeze(system, {.edge = 0.3});
+  ASSERT_FALSE(model.reference().failure);
+  const Measured measured = measure(datafile::fe_text(
+      start::open_wetted_faces(model.complex_at(model.reference(), system))));
+  expect_near(measured.energy, model.reference().report.energy, "energy");
+  expect_near(measured.area, model.reference().report.area, "area");
+  expect_near(measured.volume, 2.0, "volume");
 }
 
 }  // namespace

@@ -86,6 +86,11 @@ films::FilmSystem rates_of(const Design& design) {
   for (std::size_t f = 0; f < rates.films.size(); ++f) {
     rates.films[f].tension -= low.films[f].tension;
   }
+  for (std::size_t c = 0; c < rates.caps.size(); ++c) {
+    if (rates.caps[c].wall) {
+      rates.caps[c].wall->tension -= low.caps[c].wall->tension;
+    }
+  }
   for (std::size_t b = 0; b < rates.bodies.size(); ++b) {
     if (rates.bodies[b].volume) {
       *rates.bodies[b].volume -= *low.bodies[b].volume;
@@ -181,6 +186,53 @@ TEST(FilmGradient, OfRingsBetweenMovingRims) {
         bored(0), {.edge = 0.25, .refinements = refinements});
     expect_exact(model, bored, 0.3, 1e-2);
   }
+}
+
+/// A bulging tube from a ring that moves to a slanting wall that it slides on.
+films::FilmSystem sliding(double p) {
+  const Vec3 slope = Vec3(0.2, -0.1, 1.0);
+  films::FilmSystem system;
+  system.curves = {
+      {"ring", curves::Circle{Vec3(0.2 * p, 0.1 * p, 0.9 + 0.1 * p),
+                              Vec3(0.2 * p, 0.1, 1.0), 1.0 + 0.1 * p}},
+      {"begin", curves::Circle{Vec3::Zero(), slope, 1.0}}};
+  system.films = {
+      {"skin", films::FilmKind::Loft, {"ring", "begin"}, 1.0 + 0.3 * p}};
+  system.caps = {{"lid", "ring"}, {"foot", "begin"}};
+  system.caps[1].wall =
+      films::PlaneWall{.normal = slope, .tension = -0.2 + 0.3 * p};
+  system.bodies = {{"part", {"skin", "lid", "foot"}, 2.9 + 0.2 * p, {}}};
+  return system;
+}
+
+TEST(FilmGradient, OfAFilmThatSlidesOnAPlane) {
+  for (const int refinements : {0, 1}) {
+    const frozen::FilmModel model = frozen::FilmModel::freeze(
+        sliding(0), {.edge = 0.3, .refinements = refinements});
+    expect_exact(model, sliding, 0.2, 1e-2);
+    expect_exact(
+        model, sliding, 0.2, 1e-2,
+        [&](const settle::FilmState& film, const films::FilmSystem& system) {
+          return model.margin(film, system);
+        });
+  }
+}
+
+// The other way through the same system.
+TEST(FilmGradient, ForwardsOfAFilmThatSlidesIsItsTranspose) {
+  const frozen::FilmModel model =
+      frozen::FilmModel::freeze(sliding(0), {.edge = 0.3, .refinements = 1});
+  const films::FilmSystem system = sliding(0.2);
+  const settle::FilmState film = model.settle(system);
+  ASSERT_FALSE(film.failure);
+  const films::FilmSystem rates = rates_of(sliding);
+  frozen::FilmCovector by;
+  by.points = covector(model).points;
+  const double backwards =
+      model.rate(model.transpose(film, system, {by}).front(), system, rates);
+  const double forwards =
+      flat(by.points).dot(flat(model.tangents(film, system, {rates}).front()));
+  EXPECT_NEAR(forwards / backwards, 1.0, 1e-11);
 }
 
 films::FilmSystem blown(double p) {

@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <numbers>
+#include <regex>
+#include <string>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -304,6 +306,23 @@ TEST(StartComplex, RefusesACurveThatCrossesItself) {
   system.films = {{"film", films::FilmKind::Disk, {"bow"}, 1.0}};
   EXPECT_THAT(refusal(system),
               AllOf(HasSubstr("bow"), HasSubstr("crosses itself")));
+}
+
+// A raised rim whose right half hangs out over the right side, at x = 5.
+TEST(StartComplex, SaysWhereRimsOfOneFilmCrossInThePlan) {
+  films::FilmSystem system;
+  system.curves = {
+      {"outline",
+       curves::Polygon{{{-5, -5, 0}, {5, -5, 0}, {5, 5, 0}, {-5, 5, 0}}}},
+      {"crest", curves::Circle{{4.9, 0, 2}, {0, 0, 1}, 2.0}}};
+  system.films = {{"film", films::FilmKind::Disk, {"outline", "crest"}, 1.0}};
+  const std::string text = refusal(system);
+  std::smatch place;
+  ASSERT_TRUE(std::regex_search(
+      text, place, std::regex("or another near \\(([-0-9.]+), ([-0-9.]+), 0")))
+      << text;
+  EXPECT_EQ(std::stod(place[1]), 5.0) << text;
+  EXPECT_LE(std::abs(std::abs(std::stod(place[2])) - 2.0), 0.6);
 }
 
 }  // namespace

@@ -276,6 +276,17 @@ TEST(DesignGradient, IsExactUnderRigidPins) {
   expect_exact(text, Vec3(1.5, -4.0, 0.07));
 }
 
+TEST(DesignGradient, IsExactWhereAFilmSlidesAtAnAngleThatFollowsTheDesign) {
+  std::string text =
+      changed(every_response(), "radius = \"foot\"", "radius = 22");
+  text = changed(text, "kind = \"cap\"\ncurve = \"base\"",
+                 "kind = \"wetted\"\ncurve = \"base\"\nat = [9, 0, 0]\n"
+                 "normal = [0, 0, 2]\n"
+                 "contact_angle = \"(72 + foot / 2) * deg\"");
+  expect_exact(text, VectorX::Zero(3));
+  expect_exact(text, Vec3(1.5, -4.0, 0.07));
+}
+
 TEST(DesignGradient, IsExactUnderBearingForces) {
   const std::string text = changed(
       every_response(), "[{ on = \"head_pad\", force = [\"load\", 0, 0] }]",

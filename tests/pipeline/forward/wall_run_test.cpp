@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 #include "fea/stress/stress.h"
-#include "pipeline/case_data/film_start.h"
+#include "pipeline/case_films/film_start.h"
 #include "pipeline/forward/forward_model.h"
 #include "pipeline/forward/gradient_check.h"
 #include "pipeline/forward/part_warnings.h"
@@ -198,8 +198,8 @@ TEST(WallRuns, AreFrozenAnewFromFirstFacetsWhereOthersMakeNoWall) {
                         1.2177704500693325, 3.3856092879918407,
                         7.700998812093871}};
   for (const double way : {0.6, 0.8, 0.9, 1.0}) {
-    const case_data::Case asked = case_data::frozen_at(
-        case_data::frozen_at(input, before), before + way * (answer - before));
+    const case_data::Case asked = case_films::frozen_at(
+        case_films::frozen_at(input, before), before + way * (answer - before));
     const forward::ForwardModel model(asked);
     EXPECT_FALSE(model.failure()) << way << ": " << model.failure()->message;
   }

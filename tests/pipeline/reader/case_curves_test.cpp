@@ -279,6 +279,21 @@ TEST(CaseCurves, ThatMeetAreToldByName) {
   EXPECT_FALSE(problems_of(text).empty());
 }
 
+// Named is the curve that moves, not the one that stands, and what moves it.
+TEST(CaseCurves, ThatMeetAtTheEndOfABoundAreToldWithIt) {
+  const std::string text = disk(
+      "[curves.rim]\nkind = \"circle\"\ncenter = [\"2 * width\", 0, 0]\n"
+      "normal = [0, 0, 1]\nradius = 2\n[curves.other]\nkind = \"circle\"\n"
+      "center = [0, 0, 0]\nnormal = [0, 0, 1]\nradius = 2\n"
+      "[films.second]\nkind = \"disk\"\ncurves = [\"other\"]\n");
+  EXPECT_THAT(problems_of(text),
+              testing::Each(AllOf(
+                  HasSubstr("curves 'rim' and 'other' meet near (2, "),
+                  HasSubstr("where width = 2"),
+                  HasSubstr("(with 'width' at the end of its bounds, 2)"))));
+  EXPECT_FALSE(problems_of(text).empty());
+}
+
 // Rings of radius 1 at z = +-0.5: area 5.99179697580228.
 TEST(CaseCurves, ALoftBetweenACurveAndItsCopyIsACatenoid) {
   constexpr double kExact = 5.99179697580228;

@@ -1,4 +1,4 @@
-#include "pipeline/case_data/film_start.h"
+#include "pipeline/case_films/film_start.h"
 
 #include <cmath>
 #include <optional>
@@ -9,28 +9,9 @@
 
 #include "core/error.h"
 #include "evolve/curves/curve.h"
+#include "pipeline/case_data/case_checks.h"
 
-namespace meniscus::case_data {
-
-SourceLine line_of_start(const Case& input, const std::string& message) {
-  SourceLine line = 0;
-  const auto look = [&](const std::string& name, SourceLine at) {
-    const std::size_t found = message.find("'" + name + "'");
-    line = line == 0 && found != std::string::npos ? at : line;
-  };
-  for (const FilmEntry& film : input.films) {
-    look(film.spec.name, film.line);
-  }
-  for (const CapEntry& cap : input.caps) {
-    look(cap.spec.name, cap.line);
-  }
-  for (const BodyEntry& body : input.bodies) {
-    if (message.find("body '" + body.name + "'") != std::string::npos) {
-      line = body.enclosure_line;
-    }
-  }
-  return line;
-}
+namespace meniscus::case_films {
 
 namespace {
 
@@ -87,7 +68,7 @@ bool is_same_film(const settle::FilmReport& one,
   return std::abs(one.area - other.area) <= kSameFilm * one.area;
 }
 
-Case frozen_at(Case input, const VectorX& design) {
+case_data::Case frozen_at(case_data::Case input, const VectorX& design) {
   input.earlier_freezes.push_back(initial_design(input));
   for (std::size_t k = 0; k < input.design.size(); ++k) {
     input.design[k].initial = design[static_cast<Eigen::Index>(k)];
@@ -95,7 +76,8 @@ Case frozen_at(Case input, const VectorX& design) {
   return input;
 }
 
-frozen::FilmModel freeze_films(const Case& input, const EvaluatedCase& inputs,
+frozen::FilmModel freeze_films(const case_data::Case& input,
+                               const case_data::EvaluatedCase& inputs,
                                const frozen::FilmModelOptions& options) {
   try {
     std::vector<films::FilmSystem> way;
@@ -116,8 +98,9 @@ frozen::FilmModel freeze_films(const Case& input, const EvaluatedCase& inputs,
   } catch (const InvalidInput& error) {
     const std::string message = error.what();
     throw InvalidInput(fmt::format(
-        "{}: {}", place(input, line_of_start(input, message)), message));
+        "{}: {}", place(input, case_data::line_of_start(input, message)),
+        message));
   }
 }
 
-}  // namespace meniscus::case_data
+}  // namespace meniscus::case_films

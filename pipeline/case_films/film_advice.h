@@ -10,7 +10,7 @@
 #include "core/monitor.h"
 #include "pipeline/case_data/case.h"
 
-namespace meniscus::case_data {
+namespace meniscus::case_films {
 
 /// Whether there is no film, or none that is stable.
 bool is_of_films(const Failure& failure);
@@ -30,7 +30,8 @@ struct AdviceOptions {
 /// tried in vain and what is left to do; empty for failures that are neither of
 /// films nor of the surface that they close. The same for the same input: a
 /// fixed list, no clock. Throws Interrupted.
-std::string tried_advice(const Case& input, const EvaluatedCase& inputs,
+std::string tried_advice(const case_data::Case& input,
+                         const case_data::EvaluatedCase& inputs,
                          const Failure& failure, const AdviceOptions& options);
 
-}  // namespace meniscus::case_data
+}  // namespace meniscus::case_films

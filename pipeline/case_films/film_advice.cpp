@@ -1,4 +1,4 @@
-#include "pipeline/case_data/film_advice.h"
+#include "pipeline/case_films/film_advice.h"
 
 #include <algorithm>
 #include <array>
@@ -18,7 +18,7 @@
 #include "evolve/frozen/film_model.h"
 #include "evolve/start/start_complex.h"
 
-namespace meniscus::case_data {
+namespace meniscus::case_films {
 
 namespace {
 
@@ -47,8 +47,9 @@ Names surfaces_named(const films::FilmSystem& system,
 }
 
 /// Where the case has the volume of the body of that name.
-SourceLine volume_line(const Case& input, const std::string& name) {
-  for (const BodyEntry& body : input.bodies) {
+case_data::SourceLine volume_line(const case_data::Case& input,
+                                  const std::string& name) {
+  for (const case_data::BodyEntry& body : input.bodies) {
     if (body.name == name && body.volume) {
       return body.volume->line;
     }
@@ -112,8 +113,8 @@ struct Trial {
 /// Multiplies volumes of bodies, by index.
 using Factors = std::vector<std::pair<std::size_t, double>>;
 
-Trial volume_trial(const Case& input, const films::FilmSystem& system,
-                   const Factors& factors) {
+Trial volume_trial(const case_data::Case& input,
+                   const films::FilmSystem& system, const Factors& factors) {
   Trial trial{.system = system, .factor = "", .of = "", .detail = ""};
   std::vector<std::string> numbers;
   std::vector<std::string> names;
@@ -175,7 +176,8 @@ std::vector<double> fills_of_start(const films::FilmSystem& system,
   }
 }
 
-std::vector<Trial> trials_of(const Case& input, const EvaluatedCase& inputs,
+std::vector<Trial> trials_of(const case_data::Case& input,
+                             const case_data::EvaluatedCase& inputs,
                              const Names& named, bool of_films, double edge) {
   constexpr std::array<double, 4> kVolumes = {1.3, 1.7, 2.2, 0.75};
   constexpr double kFar = 2.2;  // times what the first facets enclose
@@ -278,7 +280,8 @@ bool is_of_films(const Failure& failure) {
          failure.kind == FailureKind::FilmNotFound;
 }
 
-std::string tried_advice(const Case& input, const EvaluatedCase& inputs,
+std::string tried_advice(const case_data::Case& input,
+                         const case_data::EvaluatedCase& inputs,
                          const Failure& failure, const AdviceOptions& options) {
   const bool of_films = is_of_films(failure);
   const bool meets =
@@ -315,4 +318,4 @@ std::string tried_advice(const Case& input, const EvaluatedCase& inputs,
                            : "move or turn the curves there");
 }
 
-}  // namespace meniscus::case_data
+}  // namespace meniscus::case_films

@@ -1,20 +1,14 @@
-/// Films of a case as they start, and where in the case a film is that cannot.
+/// Films of a case as they start.
 #pragma once
-
-#include <string>
 
 #include "evolve/frozen/film_model.h"
 #include "pipeline/case_data/case.h"
 
-namespace meniscus::case_data {
-
-/// The line of the film, solid or body that a message of the start names
-/// first; 0: none.
-SourceLine line_of_start(const Case& input, const std::string& message);
+namespace meniscus::case_films {
 
 /// The case with `design` for its initial one, whose film begins from that of
 /// the model before.
-Case frozen_at(Case input, const VectorX& design);
+case_data::Case frozen_at(case_data::Case input, const VectorX& design);
 
 /// Films of one design are one film, on other facets, where their areas are
 /// within 5 %.
@@ -27,7 +21,8 @@ bool is_same_film(const settle::FilmReport& one,
 /// another film there or none. Rims keep their divisions on that way: where one
 /// is longer or shorter by a third, first facets come first, and count where
 /// they lead to the same film (is_same_film). Throws InvalidInput.
-frozen::FilmModel freeze_films(const Case& input, const EvaluatedCase& inputs,
+frozen::FilmModel freeze_films(const case_data::Case& input,
+                               const case_data::EvaluatedCase& inputs,
                                const frozen::FilmModelOptions& options);
 
-}  // namespace meniscus::case_data
+}  // namespace meniscus::case_films

@@ -1,0 +1,136 @@
+#include "pipeline/case_data/case_wetted.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace meniscus::case_data {
+
+namespace {
+
+constexpr int kPlacesOnRim = 16;
+constexpr double kOnWall = 1e-9;       // of the curve's size
+constexpr double kSameEnergy = 1e-12;  // of films of one tension, or at 90 deg
+
+/// The films that end at the curves of a wetted face; without those whose
+/// tension depends on the place, of which check_bodies() tells.
+std::vector<const FilmEntry*> films_at(const Case& input, const CapEntry& cap) {
+  const std::vector<std::string> curves = cap.spec.curves();
+  std::vector<const FilmEntry*> result;
+  for (const FilmEntry& film : input.films) {
+    if (!film.tension.of_place &&
+        std::any_of(curves.begin(), curves.end(), [&](const auto& curve) {
+          return std::find(film.spec.curves.begin(), film.spec.curves.end(),
+                           curve) != film.spec.curves.end();
+        })) {
+      result.push_back(&film);
+    }
+  }
+  return result;
+}
+
+/// What a film needs of the wall, -T cos(contact angle) (Young).
+Dual1 energy_for(const FilmEntry& film, const WettedWall& wall,
+                 const CaseValues& values) {
+  return -(values.dual(film.tension.quantity) *
+           cos(values.dual(wall.contact_angle)));
+}
+
+/// A face has one energy per area for all films that end on it.
+void check_one_energy(const Case& input, const CapEntry& cap,
+                      const std::vector<const FilmEntry*>& films,
+                      const CaseValues& values) {
+  const double first = energy_for(*films[0], *cap.wetted, values).value;
+  for (const FilmEntry* film : films) {
+    const double energy = energy_for(*film, *cap.wetted, values).value;
+    const double tension = values.dual(film->tension.quantity).value;
+    if (!(std::abs(energy - first) <= kSameEnergy * std::abs(tension))) {
+      values.problems().push_back(fmt::format(
+          "{}: films '{}' and '{}' end on the wall of '{}' and need {:.6g} and "
+          "{:.6g} of energy per area there; give them one tension, or a "
+          "contact angle of 90 deg",
+          place(input, cap.line), films[0]->spec.name, film->spec.name,
+          cap.spec.name, first, energy));
+    }
+  }
+}
+
+Points places_on(const curves::Curve& curve) {
+  Points result;
+  for (int k = 0; k < kPlacesOnRim; ++k) {
+    result.push_back(
+        curves::point_at(curve.shape, static_cast<double>(k) / kPlacesOnRim));
+  }
+  return result;
+}
+
+void check_on_wall(const Case& input, const CapEntry& cap,
+                   const films::PlaneWall& wall, const curves::Curve& curve,
+                   const CaseValues& values) {
+  const Vec3 n = wall.normal.normalized();
+  const Points places = places_on(curve);
+  const auto off = [&](const Vec3& p) { return std::abs(n.dot(p - wall.at)); };
+  const auto worst = std::max_element(
+      places.begin(), places.end(),
+      [&](const Vec3& a, const Vec3& b) { return off(a) < off(b); });
+  if (!(off(*worst) <= kOnWall * bounding_diagonal(places))) {
+    values.problems().push_back(fmt::format(
+        "{}: curve '{}' is {:.4g} off the wall of '{}' at ({:.4g}, {:.4g}, "
+        "{:.4g}); expected one in its plane, where the film begins",
+        place(input, cap.line), curve.name, off(*worst), cap.spec.name,
+        worst->x(), worst->y(), worst->z()));
+  }
+}
+
+}  // namespace
+
+films::PlaneWall wall_of(const Case& input, const CapEntry& cap,
+                         const CaseValues& values) {
+  const WettedWall& wetted = *cap.wetted;
+  films::PlaneWall wall{.at = values.at(wetted.at),
+                        .normal = values.at(wetted.normal)};
+  if (!values.are_rates() && !(wall.normal.norm() > 0.0)) {
+    values.problems().push_back(fmt::format(
+        "{}: solids.{}.normal is 0; expected a direction across the wall",
+        place(input, wetted.normal[0].line), cap.spec.name));
+  }
+  values.at(
+      wetted.contact_angle,
+      [](double a) {
+        return a > 0.0 && a < std::numbers::pi && std::abs(std::cos(a)) < 1.0;
+      },
+      "above 0 and below 180 deg");
+  const std::vector<const FilmEntry*> films = films_at(input, cap);
+  if (films.empty()) {
+    return wall;  // check_bodies() has told so
+  }
+  const Dual1 energy = energy_for(*films[0], wetted, values);
+  if (!values.are_rates()) {
+    wall.tension = energy.value;
+    check_one_energy(input, cap, films, values);
+  } else {
+    wall.tension = energy.is_constant() ? 0.0 : energy.gradient[0];
+  }
+  return wall;
+}
+
+void check_on_walls(const Case& input, const films::FilmSystem& system,
+                    const CaseValues& values) {
+  for (std::size_t k = 0; k < input.caps.size(); ++k) {
+    const films::CapSpec& spec = system.caps[k];
+    for (const std::string& name : spec.curves()) {
+      const auto curve =
+          std::find_if(system.curves.begin(), system.curves.end(),
+                       [&](const curves::Curve& c) { return c.name == name; });
+      if (spec.wall && curve != system.curves.end()) {
+        check_on_wall(input, input.caps[k], *spec.wall, *curve, values);
+      }
+    }
+  }
+}
+
+}  // namespace meniscus::case_data

@@ -1,0 +1,18 @@
+/// Faces that films wet on plane walls: solids of kind wetted.
+#pragma once
+
+#include "pipeline/case_data/case.h"
+#include "pipeline/case_data/case_values.h"
+
+namespace meniscus::case_data {
+
+/// The wall of a wetted face and -T cos(contact angle), its energy per area, or
+/// the rate of that; what is wrong with them is told.
+films::PlaneWall wall_of(const Case& input, const CapEntry& cap,
+                         const CaseValues& values);
+
+/// Tells of curves that do not lie in the wall on which their film slides.
+void check_on_walls(const Case& input, const films::FilmSystem& system,
+                    const CaseValues& values);
+
+}  // namespace meniscus::case_data

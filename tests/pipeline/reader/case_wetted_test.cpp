@@ -1,0 +1,110 @@
+// Solids of kind wetted: faces that films wet on plane walls.
+#include <cmath>
+#include <numbers>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/case_text.h"
+
+namespace meniscus::case_wetted_test {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// The strut on a foot that slides.
+std::string sliding(const std::string& angle = "contact_angle = \"60 deg\"") {
+  return changed(strut(), "kind = \"cap\"\ncurve = \"base\"",
+                 "kind = \"wetted\"\ncurve = \"base\"\nat = [0, 0, 0]\n"
+                 "normal = [0, 0, 1]\n" +
+                     angle);
+}
+
+TEST(CaseWetted, HasYoungsEnergyAndItsRate) {
+  const case_data::Case input = case_of(changed(
+      sliding("contact_angle = \"foot / 25\""), "curves = [\"base\", \"head\"]",
+      "curves = [\"base\", \"head\"]\ntension = \"foot / 10\""));
+  const VectorX design = case_data::initial_design(input);
+  const auto wall = case_data::evaluate(input, design).film_system.caps[0].wall;
+  ASSERT_TRUE(wall.has_value());
+  EXPECT_DOUBLE_EQ(wall->tension, -2.5 * std::cos(1.0));
+  const auto rate = case_data::rates(input, design, 0).film_system.caps[0].wall;
+  EXPECT_DOUBLE_EQ(rate->tension,
+                   -0.1 * std::cos(1.0) + 2.5 * std::sin(1.0) / 25.0);
+}
+
+TEST(CaseWetted, MeetsAtARightAngleWhereNoneIsSaid) {
+  const case_data::Case input = case_of(sliding(""));
+  const auto inputs =
+      case_data::evaluate(input, case_data::initial_design(input));
+  EXPECT_NEAR(inputs.film_system.caps[0].wall->tension, 0.0, 1e-15);
+}
+
+/// A second skin within the first, which slides on the same face.
+std::string doubled(const std::string& angle, const std::string& tension) {
+  const std::string text = changed(sliding(angle), "curve = \"base\"\nat",
+                                   "curve = \"base\"\nholes = [\"hole\"]\nat");
+  return changed(
+      changed(changed(text, "[solids.foot_pad]",
+                      "[curves.hole]\nkind = \"circle\"\n"
+                      "center = [0, 0, 0]\nnormal = [0, 0, 1]\nradius = 8\n"
+                      "[curves.vent]\nkind = \"circle\"\n"
+                      "center = [0, 0, \"length\"]\nnormal = [0, 0, 1]\n"
+                      "radius = 6\n[films.core]\nkind = \"branch\"\n"
+                      "curves = [\"hole\", \"vent\"]\ntension = " +
+                          tension + "\n\n[solids.foot_pad]"),
+              "curve = \"head\"", "curve = \"head\"\nholes = [\"vent\"]"),
+      "[\"skin\", ", "[\"skin\", \"core\", ");
+}
+
+void expect_problem(const std::string& text, const std::string& message) {
+  const std::vector<std::string> problems = problems_of(text);
+  ASSERT_FALSE(problems.empty()) << message;
+  EXPECT_THAT(problems[0], HasSubstr(message));
+}
+
+TEST(CaseWetted, MistakesAreToldWithTheirLines) {
+  const std::string good = sliding();
+  EXPECT_THAT(problems_of(good), IsEmpty());
+  for (const char* angle : {"0 deg", "180 deg", "-10 deg", "200 deg"}) {
+    expect_problem(sliding(std::string("contact_angle = \"") + angle + "\""),
+                   "case.toml:33: solids.foot_pad.contact_angle is");
+  }
+  expect_problem(changed(good, "normal = [0, 0, 1]\ncontact",
+                         "normal = [0, 0, 0]\ncontact"),
+                 "case.toml:32: solids.foot_pad.normal is 0");
+  expect_problem(
+      changed(good, "at = [0, 0, 0]", "at = [0, 0, 0.5]"),
+      "case.toml:28: curve 'base' is 0.5 off the wall of 'foot_pad'");
+  expect_problem(changed(good, "at = [0, 0, 0]", "at = [0, 0, \"foot - 25\"]"),
+                 "case.toml:31: solids.foot_pad.at[z] depends on 'foot'");
+  expect_problem(
+      changed(good, "curves = [\"base\", \"head\"]",
+              "curves = [\"base\", \"head\"]\ntension = \"2 + x / 100\""),
+      "its tension depends on the place");
+  expect_problem(
+      changed(good, "[solids.head_pad]",
+              "[solids.plug]\nkind = \"ring\"\ncurve = \"base\"\n"
+              "inner = \"head\"\n\n[solids.head_pad]"),
+      "solid 'foot_pad' is wetted at curve 'base', where skin, plug end; "
+      "expected one film there and no other solid");
+  expect_problem(changed(good, "[solids.foot_pad]",
+                         "[walls.shell]\nfilms = [\"skin\"]\nthickness = 2\n"
+                         "material = \"aluminium\"\n\n[solids.foot_pad]"),
+                 "case.toml:28: walls.shell is of a film that slides on the "
+                 "wall of 'foot_pad'");
+}
+
+TEST(CaseWetted, FilmsOnOneFaceNeedOneEnergyOfIt) {
+  const std::string angle = "contact_angle = \"60 deg\"";
+  EXPECT_THAT(problems_of(doubled(angle, "1")), IsEmpty());
+  EXPECT_THAT(problems_of(doubled("", "2")), IsEmpty());
+  expect_problem(doubled(angle, "2"),
+                 "films 'skin' and 'core' end on the wall of 'foot_pad' and "
+                 "need -0.5 and -1 of energy per area there; give them one "
+                 "tension, or a contact angle of 90 deg");
+}
+
+}  // namespace
+}  // namespace meniscus::case_wetted_test
