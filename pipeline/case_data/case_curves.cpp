@@ -249,7 +249,7 @@ constexpr int kAround = 64;  // places on a curve
 /// How two closed curves of one plane that do not cross lie.
 enum class Nesting { Beside, Within, Around };
 
-Points places_on(const curves::CurveShape& shape) {
+Points rim_places(const curves::CurveShape& shape) {
   std::vector<double> t;
   for (int k = 0; k < kAround; ++k) {
     t.push_back(static_cast<double>(k) / kAround);
@@ -274,8 +274,8 @@ bool winds_around(const Points& loop, const Vec3& at) {
 
 Nesting nesting_of(const curves::CurveShape& one,
                    const curves::CurveShape& other) {
-  const Points a = places_on(one);
-  const Points b = places_on(other);
+  const Points a = rim_places(one);
+  const Points b = rim_places(other);
   if (winds_around(b, a[0])) {
     return Nesting::Within;
   }
