@@ -11,14 +11,14 @@ Mean mixed(const Mean& a, const Mean& b, double part) {
   for (const auto& [point, weight] : a) {
     sum.emplace_back(point, (1.0 - part) * weight);
   }
-  for (const auto& [point, weight] : b) {
-    const auto same = std::find_if(sum.begin(), sum.end(), [&](const auto& at) {
-      return at.first == point;
-    });
+  for (const auto& of_b : b) {
+    const auto same = std::find_if(
+        sum.begin(), sum.end(),
+        [&](const auto& of_a) { return of_a.first == of_b.first; });
     if (same == sum.end()) {
-      sum.emplace_back(point, part * weight);
+      sum.emplace_back(of_b.first, part * of_b.second);
     } else {
-      same->second += part * weight;
+      same->second += part * of_b.second;
     }
   }
   return sum;

@@ -250,9 +250,9 @@ constexpr int kAround = 64;  // places on a curve
 enum class Nesting { Beside, Within, Around };
 
 Points rim_places(const curves::CurveShape& shape) {
-  std::vector<double> t;
+  std::vector<double> t(kAround);
   for (int k = 0; k < kAround; ++k) {
-    t.push_back(static_cast<double>(k) / kAround);
+    t[static_cast<std::size_t>(k)] = static_cast<double>(k) / kAround;
   }
   return curves::points_at(shape, t);
 }

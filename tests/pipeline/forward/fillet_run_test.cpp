@@ -195,6 +195,15 @@ TEST(RimsOfOneFace, TellThatTheyHaveMerged) {
                                 HasSubstr("'other' lies within 'foot'"))));
 }
 
+TEST(RimsOfOneFace, FailADesignOfAStudy) {
+  const forward::ForwardModel model(case_of(two_rods("17")));
+  ASSERT_FALSE(model.failure()) << model.failure()->message;
+  const forward::Evaluation there = model.evaluate(design_of(4.0, 15.0));
+  ASSERT_TRUE(there.failure);
+  EXPECT_THAT(there.failure->message,
+              HasSubstr("rims of 'plate/top' have merged"));
+}
+
 TEST(RimsOfOneFace, AreToldInCheckToo) {
   EXPECT_THAT(problems_of(two_rods("9")),
               Contains(HasSubstr("rims of 'plate/top' have merged")));
