@@ -17,12 +17,13 @@ namespace meniscus::fillets {
 
 namespace {
 
-constexpr double kReach = 3.0;       // of the ball's farthest touch: the bands
-constexpr double kLeastReach = 1.2;  // the same, least
-constexpr double kOfWhole = 0.9;     // of a surface that a band may take
-constexpr double kOfHalf = 0.45;     // where another fillet begins at its end
-constexpr double kLeastApart = 0.3;  // of sections at their ends, by the curve
-constexpr double kCorner = 0.35;     // turn between edges of a curve [rad]
+constexpr double kReach = 3.0;        // of the ball's farthest touch: the bands
+constexpr double kLeastTouch = 0.25;  // of the radius: surfaces may turn apart
+constexpr double kLeastReach = 1.2;   // the same, least
+constexpr double kOfWhole = 0.9;      // of a surface that a band may take
+constexpr double kOfHalf = 0.45;      // where another fillet begins at its end
+constexpr double kLeastApart = 0.3;   // of sections at their ends, by the curve
+constexpr double kCorner = 0.35;      // turn between edges of a curve [rad]
 
 std::string place_text(const Vec3& p) {
   return fmt::format("({:.4g}, {:.4g}, {:.4g})", p.x(), p.y(), p.z());
@@ -215,7 +216,7 @@ class Bands {
   }
 
   void find_lengths(const LabelledFacets& a, const LabelledFacets& b) {
-    double touch_most = 0.0;
+    double touch_most = kLeastTouch * spec_.radius;
     Vec3 where = Vec3::Zero();
     for (const Profile& profile : result_.profiles) {
       const double at = touch(a, b, profile);
