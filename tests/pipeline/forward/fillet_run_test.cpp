@@ -196,12 +196,15 @@ TEST(RimsOfOneFace, TellThatTheyHaveMerged) {
 }
 
 TEST(RimsOfOneFace, FailADesignOfAStudy) {
-  const forward::ForwardModel model(case_of(two_rods("17")));
+  const forward::ForwardModel model(case_of(
+      changed(rod_on_plate(), "thickness = 5\n",
+              "thickness = 5\nholes = [[18, 0, 0]]\nhole_radius = 1.5\n")));
   ASSERT_FALSE(model.failure()) << model.failure()->message;
-  const forward::Evaluation there = model.evaluate(design_of(4.0, 15.0));
+  const forward::Evaluation there = model.evaluate(design_of(4.0, 18.0));
   ASSERT_TRUE(there.failure);
   EXPECT_THAT(there.failure->message,
-              HasSubstr("rims of 'plate/top' have merged"));
+              AllOf(HasSubstr("'foot'"), HasSubstr("'plate/hole_1'"),
+                    HasSubstr("rims of 'plate/top' have merged")));
 }
 
 TEST(RimsOfOneFace, AreToldInCheckToo) {
