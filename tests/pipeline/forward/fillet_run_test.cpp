@@ -196,9 +196,9 @@ TEST(RimsOfOneFace, TellThatTheyHaveMerged) {
 }
 
 TEST(RimsOfOneFace, FailADesignOfAStudy) {
-  const forward::ForwardModel model(case_of(
-      changed(rod_on_plate(), "thickness = 5\n",
-              "thickness = 5\nholes = [[18, 0, 0]]\nhole_radius = 1.5\n")));
+  const forward::ForwardModel model(case_of(changed(
+      rod_on_plate(), "thickness = 5\n",
+      "thickness = 5\nhole_centers = [[18, 0, 0]]\nhole_radius = 1.5\n")));
   ASSERT_FALSE(model.failure()) << model.failure()->message;
   const forward::Evaluation there = model.evaluate(design_of(4.0, 18.0));
   ASSERT_TRUE(there.failure);
