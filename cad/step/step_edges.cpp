@@ -31,8 +31,8 @@ namespace meniscus::step {
 
 namespace {
 
-constexpr int kNamesShown = 24;   // edges that a message lists
-constexpr double kClosed = 1e-6;  // gap between edges [their length]
+constexpr std::size_t kNamesShown = 24;  // edges that a message lists
+constexpr double kClosed = 1e-6;         // gap between edges [their length]
 
 std::string text_of(const Vec3& p) {
   return fmt::format("({:.5g}, {:.5g}, {:.5g})", p[0], p[1], p[2]);
@@ -117,6 +117,8 @@ struct OpenStepEdges::Impl {
   std::optional<solid::EllipseCurve> whole(
       const std::vector<StepPiece>& pieces) const;
   std::string described(int edge) const;
+  /// All that have a length: what a film may begin at alone comes first.
+  std::vector<int> likely_rims() const;
   int find(const std::string& edge) const;
   int find_face(const std::string& face) const;
   std::vector<StepPiece> chained(std::vector<StepPiece> pieces) const;
@@ -234,16 +236,46 @@ int OpenStepEdges::Impl::find(const std::string& edge) const {
   std::erase(names, "");
   const std::string near = nearest_name(edge, names);
   std::vector<std::string> there;
-  for (int k = 1; k <= edges.Extent() && k <= kNamesShown; ++k) {
-    if (!BRep_Tool::Degenerated(TopoDS::Edge(edges(k)))) {
-      there.push_back(described(k));
+  for (const int k : likely_rims()) {
+    if (there.size() == kNamesShown) {
+      there.emplace_back("...");
+      break;
     }
+    there.push_back(described(k));
   }
   throw InvalidInput(fmt::format(
-      "{} has no edge '{}'{}; it has {}, by number: {}{}", file.path.string(),
-      edge, near.empty() ? "" : fmt::format(", did you mean '{}'?", near),
-      edges.Extent(), fmt::join(there, "; "),
-      edges.Extent() > kNamesShown ? "; ..." : ""));
+      "{} has no edge '{}'{}; it has {}, those that close by themselves first, "
+      "the longest first, by number: {}",
+      file.path.string(), edge,
+      near.empty() ? "" : fmt::format(", did you mean '{}'?", near),
+      edges.Extent(), fmt::join(there, "; ")));
+}
+
+std::vector<int> OpenStepEdges::Impl::likely_rims() const {
+  struct Edge {
+    int number = 0;
+    bool open = false;
+    double length = 0.0;
+  };
+  std::vector<Edge> found;
+  for (int k = 1; k <= edges.Extent(); ++k) {
+    const TopoDS_Edge& edge = TopoDS::Edge(edges(k));
+    if (!BRep_Tool::Degenerated(edge)) {
+      found.push_back(
+          {k, !TopExp::FirstVertex(edge).IsSame(TopExp::LastVertex(edge)),
+           GCPnts_AbscissaPoint::Length(curve(k))});
+    }
+  }
+  std::stable_sort(found.begin(), found.end(),
+                   [](const Edge& a, const Edge& b) {
+                     return a.open != b.open ? b.open : a.length > b.length;
+                   });
+  std::vector<int> numbers;
+  numbers.reserve(found.size());
+  for (const Edge& edge : found) {
+    numbers.push_back(edge.number);
+  }
+  return numbers;
 }
 
 int OpenStepEdges::Impl::find_face(const std::string& face) const {

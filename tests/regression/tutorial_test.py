@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""docs/tutorial.md and docs/arms.md, done as they say: its commands run in order in an empty
-folder, its tables are put into the files that it names, and what it shows is
-what comes out, but for the clock and the last digits."""
+"""docs/tutorial.md, docs/tutorial-bracket.md and docs/arms.md, done as they say: their
+commands run in order in an empty folder, their tables are put into the files that they
+name, and what they show is what comes out, but for the clock and the last digits."""
 import os
 import re
 import subprocess
@@ -111,6 +111,11 @@ class Tutorial(ProgramTest):
         commands, shown = self.follow(DOCS / "tutorial.md")
         self.assertGreater(commands, 8)
         self.assertGreater(shown, 5)
+
+    def test_bracket(self):
+        commands, shown = self.follow(DOCS / "tutorial-bracket.md")
+        self.assertGreater(commands, 4)
+        self.assertGreater(shown, 4)
 
     def test_arms(self):
         commands, shown = self.follow(DOCS / "arms.md")
