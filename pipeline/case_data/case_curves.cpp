@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/geometry/surface_mesh.h"
 #include "evolve/curves/curve_contact.h"
 #include "evolve/films/shared_sides.h"
 #include "pipeline/case_data/case_features.h"
@@ -180,13 +181,47 @@ std::vector<curves::Curve> curves_of(const Case& input,
 
 namespace {
 
+constexpr int kAround = 64;  // places on a curve
+
+Points rim_places(const curves::CurveShape& shape) {
+  std::vector<double> t(kAround);
+  for (int k = 0; k < kAround; ++k) {
+    t[static_cast<std::size_t>(k)] = static_cast<double>(k) / kAround;
+  }
+  return curves::points_at(shape, t);
+}
+
+Vec3 area_of(const Points& loop) {
+  Vec3 area = Vec3::Zero();
+  for (std::size_t k = 0; k < loop.size(); ++k) {
+    area += (loop[k] - loop[0]).cross(loop[(k + 1) % loop.size()] - loop[0]);
+  }
+  return area;
+}
+
+/// Faces of several planes may have one name.
+bool share_plane(const curves::CurveShape& one,
+                 const curves::CurveShape& other) {
+  constexpr double kOffPlane = 1e-6;  // of the size
+  const Points a = rim_places(one);
+  const Points b = rim_places(other);
+  const Vec3 normal = area_of(a).normalized();
+  const double off = kOffPlane * (bounding_diagonal(a) + bounding_diagonal(b));
+  const auto lies = [&](const Vec3& p) {
+    return std::abs(normal.dot(p - a[0])) <= off;
+  };
+  return std::all_of(a.begin(), a.end(), lies) &&
+         std::all_of(b.begin(), b.end(), lies);
+}
+
 /// The plane face that ends at both curves; empty: none does.
-std::string face_with(const films::FilmSystem& system, const std::string& a,
-                      const std::string& b) {
+std::string face_with(const films::FilmSystem& system, const curves::Curve& a,
+                      const curves::Curve& b) {
   for (const films::CapSpec& cap : system.caps) {
     const std::vector<std::string>& rims = cap.more;
-    if (std::find(rims.begin(), rims.end(), a) != rims.end() &&
-        std::find(rims.begin(), rims.end(), b) != rims.end()) {
+    if (std::find(rims.begin(), rims.end(), a.name) != rims.end() &&
+        std::find(rims.begin(), rims.end(), b.name) != rims.end() &&
+        share_plane(a.shape, b.shape)) {
       return cap.name;
     }
   }
@@ -227,7 +262,7 @@ void check_meetings(const Case& input, const films::FilmSystem& system,
     }
     const Vec3& at = meeting.place;
     const std::string face =
-        face_with(system, input.curves[a].name, input.curves[b].name);
+        face_with(system, system.curves[a], system.curves[b]);
     const std::string of_second = where(input.curves[b], values);
     values.problems().push_back(fmt::format(
         "{}: curves '{}' and '{}' meet near ({:.4g}, {:.4g}, {:.4g}){}; {}",
@@ -244,30 +279,17 @@ void check_meetings(const Case& input, const films::FilmSystem& system,
 
 namespace {
 
-constexpr int kAround = 64;  // places on a curve
-
 /// How two closed curves of one plane that do not cross lie.
 enum class Nesting { Beside, Within, Around };
 
-Points rim_places(const curves::CurveShape& shape) {
-  std::vector<double> t(kAround);
-  for (int k = 0; k < kAround; ++k) {
-    t[static_cast<std::size_t>(k)] = static_cast<double>(k) / kAround;
-  }
-  return curves::points_at(shape, t);
-}
-
 /// Does the loop wind around the point, both in a plane?
 bool winds_around(const Points& loop, const Vec3& at) {
-  Vec3 area = Vec3::Zero();
-  for (std::size_t k = 0; k < loop.size(); ++k) {
-    area += (loop[k] - at).cross(loop[(k + 1) % loop.size()] - at);
-  }
+  const Vec3 normal = area_of(loop).normalized();
   double turned = 0.0;
   for (std::size_t k = 0; k < loop.size(); ++k) {
     const Vec3 from = loop[k] - at;
     const Vec3 to = loop[(k + 1) % loop.size()] - at;
-    turned += std::atan2(area.normalized().dot(from.cross(to)), from.dot(to));
+    turned += std::atan2(normal.dot(from.cross(to)), from.dot(to));
   }
   return std::abs(turned) > EIGEN_PI;
 }
@@ -291,6 +313,7 @@ class NestingCheck {
         initial_(initial),
         now_(now),
         design_(design),
+        shared_(now),
         problems_(problems) {}
 
   void run(const films::CapSpec& cap) {
@@ -310,8 +333,11 @@ class NestingCheck {
   }
 
   void compare(const films::CapSpec& cap, std::size_t a, std::size_t b) {
-    if (a == now_.size() || b == now_.size()) {
-      return;
+    if (a == now_.size() || b == now_.size() ||
+        (shared_.shares(static_cast<int>(a)) &&
+         shared_.shares(static_cast<int>(b))) ||
+        !share_plane(now_[a].shape, now_[b].shape)) {
+      return;  // faces that join, or of other planes
     }
     const Nesting found = nesting_of(now_[a].shape, now_[b].shape);
     if (found == nesting_of(initial_[a].shape, initial_[b].shape)) {
@@ -332,6 +358,7 @@ class NestingCheck {
   const std::vector<curves::Curve>& initial_;
   const std::vector<curves::Curve>& now_;
   const VectorX& design_;
+  films::SharedRims shared_;
   std::vector<std::string>& problems_;
 };
 
