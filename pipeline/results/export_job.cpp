@@ -9,6 +9,7 @@
 #include "pipeline/case_films/film_options.h"
 #include "pipeline/case_films/film_start.h"
 #include "pipeline/forward/design_stages.h"
+#include "pipeline/forward/fillets.h"
 #include "pipeline/forward/walls.h"
 #include "pipeline/forward/worst_cases.h"
 #include "pipeline/store/refreeze.h"
@@ -71,9 +72,11 @@ const SettledFilm& ExportJob::film() {
 
 SurfaceMesh ExportJob::bodies_surface() {
   const SettledFilm& settled = film();
-  return inputs_.walls.empty() ? settled.model.solids(settled.state.points)
-                               : forward::boundary_of(inputs_, settled.model,
-                                                      settled.state.points);
+  const Points& points = settled.state.points;
+  return inputs_.walls.empty()
+             ? settled.model.solids(forward::rounded_anew(
+                   inputs_.film_system, settled.model, points))
+             : forward::boundary_of(inputs_, settled.model, points);
 }
 
 namespace {
