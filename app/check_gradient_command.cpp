@@ -53,7 +53,8 @@ int check_gradient_command(const CheckGradientArguments& arguments) {
   catch_stop_signals();
   return exit_code_of({on<SolverError>(kExitNoSolution, "failed: ")}, [&] {
     const forward::CaseGradientCheck check = forward::check_case_gradient(
-        input, design_at(input, arguments.at), {.monitor = &monitor});
+        input, design_at(input, arguments.at), {.monitor = &monitor},
+        arguments.directions);
     if (!arguments.common.quiet || !check.report.passed) {
       std::fputs(forward::gradient_check_text(input, check).c_str(), stdout);
     }

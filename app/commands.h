@@ -66,6 +66,7 @@ struct CheckGradientArguments {
   std::string case_path;
   CommonArguments common;
   std::vector<std::string> at;  // "name=value" of design variables
+  int directions = 0;           // random ones; 0: by each variable
 };
 
 struct SolveArguments {

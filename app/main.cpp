@@ -167,6 +167,12 @@ int run_program(int argc, char** argv) {
       ->add_option("--at", gradient_arguments.at,
                    "another design than the initial one")
       ->type_name("NAME=VALUE");
+  gradient
+      ->add_option("--directions", gradient_arguments.directions,
+                   "along so many random directions of all design variables "
+                   "together, not by each one: for cases of many")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1000));
   gradient->add_flag("--quiet", gradient_arguments.common.quiet,
                      "tell only what differs");
   gradient->callback([&] {

@@ -29,7 +29,7 @@ KEYS = {
     "case": {"prepare", "runs", "convergence", "wrong"},
     "run": {"name", "command", "quick", "seconds", "exit", "pictures",
             "expected", "expected_quick", "calculix", "evolver"},
-    "calculix": {"displacement", "stress"},
+    "calculix": {"displacement", "stress", "peak"},
     "figure": {"value", "kind", "relative", "absolute", "why", "label",
                "unit", "scale", "reference", "of", "at_least", "at_most"},
     "picture": {"file", "name", "caption"},
@@ -334,18 +334,20 @@ def execute(program, folder, run, out, quick=False, pictures=False):
 
 def calculix_rows(program, outcome, out):
     """The run's final design in CalculiX: all nodal displacements, and where it
-    is asked the von Mises stress's mean by volume."""
+    is asked the von Mises stress's mean by volume and peak."""
     asked = outcome.run["calculix"]
     rows = []
     for peer in peers.solve(program, outcome.folder,
                                     out / f"{outcome.run['name']} in calculix"):
         rows.append(Row(f"calculix.{peer.name}.displacement",
                         {"at_most": asked["displacement"]}, peer.apart))
-        if "stress" in asked:
-            ours = find(outcome.result, f"stress.{peer.name}.von_mises.mean")
-            rows.append(Row(f"calculix.{peer.name}.von_mises.mean",
-                            {"value": peer.mean, "relative": asked["stress"],
-                             "reference": peer.mean, "of": "CalculiX"}, ours))
+        for key, name, theirs in (("stress", "von_mises.mean", peer.mean),
+                                  ("peak", "readings.points", peer.peak)):
+            if key in asked:
+                ours = find(outcome.result, f"stress.{peer.name}.{name}")
+                rows.append(Row(f"calculix.{peer.name}.{name}",
+                                {"value": theirs, "relative": asked[key],
+                                 "reference": theirs, "of": "CalculiX"}, ours))
     return rows
 
 

@@ -120,10 +120,11 @@ def difference(a, b):
 class Peer:
     """Figures of one load case."""
 
-    def __init__(self, name, apart, mean):
+    def __init__(self, name, apart, mean, peak):
         self.name = name
         self.apart = apart  # displacements, largest over the largest
         self.mean = mean    # von Mises stress by volume
+        self.peak = peak    # the same at integration points, the largest
 
 
 def evolver_energy(program, run, place):
@@ -165,10 +166,13 @@ def solve(program, run, place):
     peers = []
     for k, name in enumerate(names):
         moved = [row[1:4] for row in sorted(theirs[k])]
-        whole = sum_ = 0.0
+        whole = sum_ = peak = 0.0
         for row in stresses[k]:
             weight = weights[int(row[0])][int(row[1]) - 1]
+            stress = von_mises(row[2:8])
             whole += weight
-            sum_ += weight * von_mises(row[2:8])
-        peers.append(Peer(name, difference(ours[k][1], moved), sum_ / whole))
+            sum_ += weight * stress
+            peak = max(peak, stress)
+        peers.append(Peer(name, difference(ours[k][1], moved), sum_ / whole,
+                          peak))
     return peers

@@ -35,7 +35,19 @@ double angle_between(const Vec3& a, const Vec3& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-/// The piece's parameter nearest to p: the best sample, then Gauss-Newton.
+/// The piece's parameter nearest to p, by Gauss-Newton from one near it.
+double nearest_from(const RimPiece& piece, const Vec3& p, double t) {
+  for (int round = 0; round < 30; ++round) {
+    const Vec3 slope = slope_of(piece.curve, t);
+    const double step =
+        slope.dot(p - point_of(piece.curve, t)) / slope.squaredNorm();
+    t = std::clamp(t + step, piece.first, piece.last);
+  }
+  return t;
+}
+
+/// The same from the best of samples; a curve of one piece ends where it
+/// begins, and a sample there is as good at either end.
 double nearest_on(const RimPiece& piece, const Vec3& p) {
   double best = piece.first;
   double distance = (point_of(piece.curve, best) - p).squaredNorm();
@@ -47,13 +59,16 @@ double nearest_on(const RimPiece& piece, const Vec3& p) {
       best = t;
     }
   }
-  for (int round = 0; round < 30; ++round) {
-    const Vec3 slope = slope_of(piece.curve, best);
-    const double step =
-        slope.dot(p - point_of(piece.curve, best)) / slope.squaredNorm();
-    best = std::clamp(best + step, piece.first, piece.last);
+  const double found = nearest_from(piece, p, best);
+  const double end = best == piece.first ? piece.last : piece.first;
+  if (best != piece.first && best != piece.last) {
+    return found;
   }
-  return best;
+  const double other = nearest_from(piece, p, end);
+  return (point_of(piece.curve, other) - p).norm() <
+                 (point_of(piece.curve, found) - p).norm()
+             ? other
+             : found;
 }
 
 }  // namespace

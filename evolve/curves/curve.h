@@ -89,6 +89,8 @@ using CurveShape = std::variant<Circle, Ellipse, Rectangle, Polygon,
 struct Curve {
   std::string name;
   CurveShape shape;
+  double fineness = 1.0;  // it is cut into pieces of so much of the films'
+                          // edge, in (0, 1]; models are frozen with it
 };
 
 /// Throws InvalidInput, naming the curve and the value, for a shape that is no

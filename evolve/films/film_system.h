@@ -113,6 +113,15 @@ struct BodySpec {
   bool is_void = false;            // of no material: not part of what is meshed
 };
 
+/// The arc of a ball in the corner along a curve where a film meets another
+/// surface (evolve/fillets). The liquid does not know it: the settled film is
+/// rounded afterwards.
+struct FilletSpec {
+  std::string name;
+  std::string curve;
+  double radius = 0.0;  // >= 0 [length]
+};
+
 struct FilmSystem {
   std::vector<curves::Curve> curves;
   std::vector<FilmSpec> films;
@@ -122,6 +131,7 @@ struct FilmSystem {
   // Field energies; like tension fields, the same for every design of a model.
   std::vector<FieldSpec> fields;
   std::vector<PressureSpec> pressures;
+  std::vector<FilletSpec> fillets;
   /// Facets that are given are the film's own: halved until they are as small
   /// as its edge, never remeshed.
   bool keep_facets = false;

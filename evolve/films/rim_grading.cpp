@@ -19,6 +19,12 @@ constexpr double kMuchFiner = 1.25;
 
 using Cell = std::array<long, 3>;
 
+bool has_many_sides(const curves::CurveShape& shape) {
+  // Rims of fewer pieces than this are cut finer for the sake of roundness.
+  constexpr int kRound = 12;
+  return curves::curve_shape::part_count(shape) > kRound;
+}
+
 /// Fine rim points by cells as wide as their reach.
 class Grading {
  public:
@@ -88,10 +94,8 @@ std::function<double(const Vec3&)> graded(const Points& points,
 
 }  // namespace
 
-bool has_many_sides(const curves::CurveShape& shape) {
-  // Rims of fewer pieces than this are cut finer for the sake of roundness.
-  constexpr int kRound = 12;
-  return curves::curve_shape::part_count(shape) > kRound;
+bool is_cut_finely(const curves::Curve& curve) {
+  return curve.fineness < 1.0 || has_many_sides(curve.shape);
 }
 
 std::function<double(const Vec3&)> graded_edge(const Points& rim, double edge) {
@@ -107,7 +111,7 @@ std::function<double(const Vec3&)> graded_edge(const FilmComplex& complex,
   std::vector<int> next = rim_neighbours(complex);
   for (std::size_t v = 0; v < next.size(); ++v) {
     if (next[v] >= 0 &&
-        !has_many_sides(complex.curves[complex.vertices[v].curve].shape)) {
+        !is_cut_finely(complex.curves[complex.vertices[v].curve])) {
       next[v] = -1;
     }
   }

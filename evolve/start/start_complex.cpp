@@ -214,7 +214,7 @@ class StartBuilder {
 
   std::vector<double> sampled(const curves::Curve& curve) const {
     try {
-      return curves::sample_parameters(curve.shape, edge_);
+      return curves::sample_parameters(curve.shape, curve.fineness * edge_);
     } catch (const InvalidInput& error) {
       throw InvalidInput(
           fmt::format("curve '{}': {}", curve.name, error.what()));
@@ -303,7 +303,7 @@ class StartBuilder {
     for (const Rim& rim : rims) {
       loops.push_back(points_of(rim));
       graded = graded || shared_.shares(rim.curve) ||
-               films::has_many_sides(system_.curves[rim.curve].shape);
+               films::is_cut_finely(system_.curves[rim.curve]);
     }
     add_filling(
         fill_face(loops, edge_, graded, system_.curves[rims[0].curve].name),

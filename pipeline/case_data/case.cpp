@@ -144,6 +144,29 @@ std::shared_ptr<const films::StartFacets> start_of(const FilmEntry& film,
   return start;
 }
 
+/// One of the film system's for each curve of a fillet.
+void add_fillets(const FilletEntry& fillet, const CaseValues& values,
+                 films::FilmSystem& system) {
+  const double radius = values.at(
+      fillet.radius, [](double r) { return r >= 0.0; }, "0 or above");
+  for (const std::string& curve : fillet.curves) {
+    system.fillets.push_back({fillet.name, curve, radius});
+  }
+}
+
+/// Curves with fillets are cut so finely that their arcs have some facets.
+void refine_curves(const Case& input, films::FilmSystem& system) {
+  constexpr double kPiece = 1.0 / 3.0;  // of the radius: four to a quarter turn
+  for (const films::FilletSpec& fillet : system.fillets) {
+    for (curves::Curve& curve : system.curves) {
+      const double wanted = kPiece * fillet.radius / input.resolution.fea;
+      if (curve.name == fillet.curve && wanted > 0.0) {
+        curve.fineness = std::min(curve.fineness, wanted);
+      }
+    }
+  }
+}
+
 films::FilmSystem films_of(const Case& input, const CaseValues& values) {
   films::FilmSystem system;
   system.curves = curves_of(input, values);
@@ -183,6 +206,12 @@ films::FilmSystem films_of(const Case& input, const CaseValues& values) {
   }
   for (const FieldEntry& field : input.fields) {
     add_field(input, field, values, system);
+  }
+  for (const FilletEntry& fillet : input.fillets) {
+    add_fillets(fillet, values, system);
+  }
+  if (!values.are_rates()) {
+    refine_curves(input, system);
   }
   return system;
 }
@@ -291,6 +320,9 @@ EvaluatedCase evaluate(const Case& input, const VectorX& design,
   result.fea_edge = input.resolution.fea;
   if (problems.size() == before) {
     check_meetings(input, result.film_system, values);
+    if (problems.size() == before) {
+      check_nesting(input, result.film_system, design, problems);
+    }
     check_sides(input, result.film_system, values);
     check_places(input, result, values);
     check_on_walls(input, result.film_system, values);

@@ -47,6 +47,7 @@ struct Case {
   std::vector<FeatureEntry> features;       // whose faces are among the caps
   std::vector<StepSolidEntry> step_solids;  // the same
   std::vector<BodyEntry> bodies;
+  std::vector<FilletEntry> fillets;
   std::vector<WallEntry> walls;
   std::vector<FieldEntry> fields;
   std::vector<MaterialEntry> materials;

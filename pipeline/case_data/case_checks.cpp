@@ -349,6 +349,25 @@ void check_fixed_materials(const Case& input, const EvaluatedCase& initial,
   }
 }
 
+/// A model frozen with a sharp corner has no facets for a round one.
+void check_fillets(const Case& input, const EvaluatedCase& initial,
+                   const EvaluatedCase& other, CaseProblems& problems) {
+  const auto& first = initial.film_system.fillets;
+  for (std::size_t k = 0; k < first.size(); ++k) {
+    if (first[k].radius > 0.0 || !(other.film_system.fillets[k].radius > 0.0)) {
+      continue;
+    }
+    for (const FilletEntry& entry : input.fillets) {
+      if (entry.name == first[k].name) {
+        problems.add_text(fmt::format(
+            "{}: {} follows the design and is 0 at the initial one; begin with "
+            "a radius above 0, from which it may become 0",
+            place(input, entry.radius.line), entry.radius.key));
+      }
+    }
+  }
+}
+
 /// The case's numbers at the initial design and, one variable at a time, at
 /// the ends of the bounds.
 void check_numbers(const Case& input, CaseProblems& problems) {
@@ -379,6 +398,7 @@ void check_numbers(const Case& input, CaseProblems& problems) {
       if (problems.empty()) {
         check_merged(input, inputs, there, problems);
         check_fixed_materials(input, inputs, there, problems);
+        check_fillets(input, inputs, there, problems);
       }
     }
   }

@@ -1,11 +1,14 @@
 #include "pipeline/case_data/case_curves.h"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/geometry/surface_mesh.h"
 #include "evolve/curves/curve_contact.h"
 #include "evolve/films/shared_sides.h"
 #include "pipeline/case_data/case_features.h"
@@ -176,6 +179,57 @@ std::vector<curves::Curve> curves_of(const Case& input,
   return result;
 }
 
+namespace {
+
+constexpr int kAround = 64;  // places on a curve
+
+Points rim_places(const curves::CurveShape& shape) {
+  std::vector<double> t(kAround);
+  for (int k = 0; k < kAround; ++k) {
+    t[static_cast<std::size_t>(k)] = static_cast<double>(k) / kAround;
+  }
+  return curves::points_at(shape, t);
+}
+
+Vec3 area_of(const Points& loop) {
+  Vec3 area = Vec3::Zero();
+  for (std::size_t k = 0; k < loop.size(); ++k) {
+    area += (loop[k] - loop[0]).cross(loop[(k + 1) % loop.size()] - loop[0]);
+  }
+  return area;
+}
+
+/// Faces of several planes may have one name.
+bool share_plane(const curves::CurveShape& one,
+                 const curves::CurveShape& other) {
+  constexpr double kOffPlane = 1e-6;  // of the size
+  const Points a = rim_places(one);
+  const Points b = rim_places(other);
+  const Vec3 normal = area_of(a).normalized();
+  const double off = kOffPlane * (bounding_diagonal(a) + bounding_diagonal(b));
+  const auto lies = [&](const Vec3& p) {
+    return std::abs(normal.dot(p - a[0])) <= off;
+  };
+  return std::all_of(a.begin(), a.end(), lies) &&
+         std::all_of(b.begin(), b.end(), lies);
+}
+
+/// The plane face that ends at both curves; empty: none does.
+std::string face_with(const films::FilmSystem& system, const curves::Curve& a,
+                      const curves::Curve& b) {
+  for (const films::CapSpec& cap : system.caps) {
+    const std::vector<std::string>& rims = cap.more;
+    if (std::find(rims.begin(), rims.end(), a.name) != rims.end() &&
+        std::find(rims.begin(), rims.end(), b.name) != rims.end() &&
+        share_plane(a.shape, b.shape)) {
+      return cap.name;
+    }
+  }
+  return "";
+}
+
+}  // namespace
+
 void check_meetings(const Case& input, const films::FilmSystem& system,
                     const CaseValues& values) {
   const films::SharedRims shared(system.curves);
@@ -207,13 +261,130 @@ void check_meetings(const Case& input, const films::FilmSystem& system,
       continue;  // faces that join: check_sides() looks at them
     }
     const Vec3& at = meeting.place;
+    const std::string face =
+        face_with(system, system.curves[a], system.curves[b]);
     const std::string of_second = where(input.curves[b], values);
     values.problems().push_back(fmt::format(
-        "{}: curves '{}' and '{}' meet near ({:.4g}, {:.4g}, {:.4g}){}; films "
-        "join where they name the same curve, other curves must keep apart",
+        "{}: curves '{}' and '{}' meet near ({:.4g}, {:.4g}, {:.4g}){}; {}",
         place(input, input.curves[b].line), input.curves[a].name,
         input.curves[b].name, at.x(), at.y(), at.z(),
-        of_second.empty() ? where(input.curves[a], values) : of_second));
+        of_second.empty() ? where(input.curves[a], values) : of_second,
+        face.empty() ? "films join where they name the same curve, other "
+                       "curves must keep apart"
+                     : fmt::format("these rims of '{}' have merged: keep them "
+                                   "apart, or draw one curve around both",
+                                   face)));
+  }
+}
+
+namespace {
+
+/// How two closed curves of one plane that do not cross lie.
+enum class Nesting { Beside, Within, Around };
+
+/// Does the loop wind around the point, both in a plane?
+bool winds_around(const Points& loop, const Vec3& at) {
+  const Vec3 normal = area_of(loop).normalized();
+  double turned = 0.0;
+  for (std::size_t k = 0; k < loop.size(); ++k) {
+    const Vec3 from = loop[k] - at;
+    const Vec3 to = loop[(k + 1) % loop.size()] - at;
+    turned += std::atan2(normal.dot(from.cross(to)), from.dot(to));
+  }
+  return std::abs(turned) > EIGEN_PI;
+}
+
+Nesting nesting_of(const curves::CurveShape& one,
+                   const curves::CurveShape& other) {
+  const Points a = rim_places(one);
+  const Points b = rim_places(other);
+  if (winds_around(b, a[0])) {
+    return Nesting::Within;
+  }
+  return winds_around(a, b[0]) ? Nesting::Around : Nesting::Beside;
+}
+
+class NestingCheck {
+ public:
+  NestingCheck(const Case& input, const std::vector<curves::Curve>& initial,
+               const std::vector<curves::Curve>& now, const VectorX& design,
+               std::vector<std::string>& problems)
+      : input_(input),
+        initial_(initial),
+        now_(now),
+        design_(design),
+        shared_(now),
+        problems_(problems) {}
+
+  void run(const films::CapSpec& cap) {
+    for (std::size_t i = 0; i < cap.more.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        compare(cap, index_of(cap.more[j]), index_of(cap.more[i]));
+      }
+    }
+  }
+
+ private:
+  std::size_t index_of(const std::string& curve) const {
+    const auto at =
+        std::find_if(now_.begin(), now_.end(),
+                     [&](const curves::Curve& c) { return c.name == curve; });
+    return static_cast<std::size_t>(at - now_.begin());
+  }
+
+  void compare(const films::CapSpec& cap, std::size_t a, std::size_t b) {
+    if (a == now_.size() || b == now_.size() ||
+        (shared_.shares(static_cast<int>(a)) &&
+         shared_.shares(static_cast<int>(b))) ||
+        !share_plane(now_[a].shape, now_[b].shape)) {
+      return;  // faces that join, or of other planes
+    }
+    const Nesting found = nesting_of(now_[a].shape, now_[b].shape);
+    if (found == nesting_of(initial_[a].shape, initial_[b].shape)) {
+      return;
+    }
+    const auto& [inner, outer] =
+        found == Nesting::Around ? std::pair(b, a) : std::pair(a, b);
+    problems_.push_back(fmt::format(
+        "{}: curves '{}' and '{}', rims of '{}', have merged on the way from "
+        "the initial design: '{}' lies {} '{}' at {}; keep them apart",
+        place(input_, input_.curves[b].line), now_[a].name, now_[b].name,
+        cap.name, now_[inner].name,
+        found == Nesting::Beside ? "beside" : "within", now_[outer].name,
+        design_text(input_, design_)));
+  }
+
+  const Case& input_;
+  const std::vector<curves::Curve>& initial_;
+  const std::vector<curves::Curve>& now_;
+  const VectorX& design_;
+  films::SharedRims shared_;
+  std::vector<std::string>& problems_;
+};
+
+}  // namespace
+
+void check_nesting(const Case& input, const films::FilmSystem& system,
+                   const VectorX& design, std::vector<std::string>& problems) {
+  const VectorX first = initial_design(input);
+  const bool may_nest = std::any_of(
+      system.caps.begin(), system.caps.end(),
+      [](const films::CapSpec& cap) { return cap.more.size() > 1; });
+  if (!may_nest || design == first) {
+    return;
+  }
+  std::vector<std::string> of_first;
+  const std::vector<curves::Curve> initial =
+      curves_of(input, CaseValues(input, first, of_first));
+  if (!of_first.empty()) {
+    return;  // told there
+  }
+  NestingCheck check(input, initial, system.curves, design, problems);
+  for (const films::CapSpec& cap : system.caps) {
+    if (cap.wall) {
+      continue;  // films slide there, and curves hold nothing
+    }
+    check.run(cap);
   }
 }
 

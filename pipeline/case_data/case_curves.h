@@ -18,6 +18,12 @@ std::vector<curves::Curve> curves_of(const Case& input,
 void check_meetings(const Case& input, const films::FilmSystem& system,
                     const CaseValues& values);
 
+/// Tells of rims of one plane face that at the initial design lay beside each
+/// other and at this one within, or the other way around: between the two they
+/// have merged. `design`: that of `system`.
+void check_nesting(const Case& input, const films::FilmSystem& system,
+                   const VectorX& design, std::vector<std::string>& problems);
+
 /// Finds curves of films and solids that lie on each other at the initial
 /// design, and makes these name the first of them. Tells which were found in
 /// the case's remarks; notes a film that names both.

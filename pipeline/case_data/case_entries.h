@@ -201,6 +201,13 @@ struct WallEntry {
   SourceLine line = 0;
 };
 
+struct FilletEntry {
+  std::string name;
+  std::vector<std::string> curves;
+  Quantity radius;
+  SourceLine line = 0;
+};
+
 enum class FieldKind { Point, Segment, Polyline, Plane, Pressure };
 
 struct FieldEntry {

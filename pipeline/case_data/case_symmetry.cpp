@@ -330,6 +330,22 @@ bool asks_for_free_part(const Case& input) {
                      });
 }
 
+/// Within the whole no corner is left in a plane.
+void refuse_fillets(const Case& input, CaseProblems& problems) {
+  for (const CapEntry& cap : input.caps) {
+    for (const FilletEntry& fillet : input.fillets) {
+      for (const std::string& curve : cap.spec.curves()) {
+        if (cap.symmetry >= 0 && names(fillet.curves, curve)) {
+          problems.add(fillet.line,
+                       fmt::format("a fillet along '{}', which lies in plane "
+                                   "{} of symmetry; take it out",
+                                   curve, cap.symmetry + 1));
+        }
+      }
+    }
+  }
+}
+
 }  // namespace
 
 void apply_symmetry(Case& input, CaseProblems& problems) {
@@ -356,6 +372,7 @@ void apply_symmetry(Case& input, CaseProblems& problems) {
   for (ResponseEntry& response : input.responses) {
     apply_to(response, faces, symmetric_parts(input), problems);
   }
+  refuse_fillets(input, problems);
   const auto refuse = [&](SourceLine at, const std::string& what) {
     problems.add(at, what + " cannot be with [symmetry] yet; draw the whole");
   };

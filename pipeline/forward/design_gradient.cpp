@@ -34,6 +34,7 @@ struct Backward {
   std::vector<double> by_modulus;   // likewise; both empty: 0
   frozen::FilmGradient film;
   VectorX by_thickness;  // of walls; empty: 0
+  VectorX by_radius;     // of fillets; empty: 0
 };
 
 class Adjoint {
@@ -220,6 +221,7 @@ void Adjoint::through_mesh(Backward& backward) const {
                             fields.mesh, partials.by_nodes);
     partials.film.points = std::move(by.film);
     backward.by_thickness = std::move(by.thickness);
+    backward.by_radius = std::move(by.fillets);
   }
 }
 
@@ -261,6 +263,10 @@ double Adjoint::rate(const Backward& backward,
   for (Eigen::Index w = 0; w < backward.by_thickness.size(); ++w) {
     const walls::WallSpec& wall = rates.walls[static_cast<std::size_t>(w)];
     sum += backward.by_thickness[w] * wall.number.value_or(0.0);
+  }
+  for (Eigen::Index f = 0; f < backward.by_radius.size(); ++f) {
+    const auto k = static_cast<std::size_t>(f);
+    sum += backward.by_radius[f] * rates.film_system.fillets[k].radius;
   }
   return sum +
          responses::place_rate(entry(backward),

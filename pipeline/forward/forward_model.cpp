@@ -109,7 +109,7 @@ SurfaceMesh ForwardModel::boundary(const case_data::EvaluatedCase& inputs,
                                    const Points& film_points) const {
   const auto& walls = part_->walls;
   return walls ? walls->fine(film_points, walls->thickness(inputs.walls))
-               : part_->film->boundary(film_points);
+               : part_->film->boundary(part_->rounded(inputs, film_points));
 }
 
 const responses::Scans& ForwardModel::scans() const { return part_->scans; }

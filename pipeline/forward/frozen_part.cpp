@@ -12,6 +12,7 @@
 #include "pipeline/case_films/film_advice.h"
 #include "pipeline/case_films/film_options.h"
 #include "pipeline/case_films/film_start.h"
+#include "pipeline/forward/fillets.h"
 #include "pipeline/forward/walls.h"
 #include "pipeline/forward/work_estimate.h"
 
@@ -71,6 +72,10 @@ bool freeze_film(const case_data::EvaluatedCase& inputs,
   const settle::FilmState& film = part.film->reference();
   start.film = film.report;
   start.failure = film.failure;
+  if (!start.failure) {
+    part.fillets = fillet_model(part.input, inputs, *part.film, film.points,
+                                start.failure);
+  }
   if (!start.failure && !inputs.walls.empty()) {
     monitor.progress({.stage = "film", .detail = "thickening the films"});
     part.walls.emplace(wall_model(inputs, *part.film, film.points));
@@ -356,10 +361,15 @@ TetFigures figures_of(const TetMesh& mesh,
           .max_dihedral_deg = quality.max_dihedral_deg};
 }
 
+Points FrozenPart::rounded(const case_data::EvaluatedCase& inputs,
+                           const Points& points) const {
+  return fillets ? fillets->rounded(points, inputs.film_system) : points;
+}
+
 QuadraticSurface FrozenPart::surface(const case_data::EvaluatedCase& inputs,
                                      const Points& points) const {
   return walls ? walls->surface(points, walls->thickness(inputs.walls))
-               : film->surface(points);
+               : film->surface(rounded(inputs, points));
 }
 
 SurfaceGradient FrozenPart::to_surface(const case_data::EvaluatedCase& inputs,
@@ -370,11 +380,17 @@ SurfaceGradient FrozenPart::to_surface(const case_data::EvaluatedCase& inputs,
       mesh_tet::transpose_quadratic(mesh, by_nodes, curve_edge);
   const Points by_corners = motion->transpose(by.corners);
   if (!walls) {
-    return {film->transpose_surface(by_corners, by.mid), VectorX()};
+    Points by_rounded = film->transpose_surface(by_corners, by.mid);
+    if (!fillets) {
+      return {std::move(by_rounded), VectorX(), VectorX()};
+    }
+    fillets::FilletGradient gradient =
+        fillets->transpose(points, inputs.film_system, by_rounded);
+    return {std::move(gradient.film), VectorX(), std::move(gradient.radius)};
   }
   walls::WallGradient gradient = walls->transpose(
       points, walls->thickness(inputs.walls), by_corners, by.mid);
-  return {std::move(gradient.film), std::move(gradient.thickness)};
+  return {std::move(gradient.film), std::move(gradient.thickness), VectorX()};
 }
 
 responses::ResponseContext FrozenPart::context(

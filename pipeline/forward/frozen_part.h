@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "evolve/fillets/fillet_model.h"
 #include "evolve/walls/wall_model.h"
 #include "mesh_tet/mesh_motion.h"
 #include "mesh_tet/tet_quality.h"
@@ -21,6 +22,7 @@ TetFigures figures_of(const TetMesh& mesh, const mesh_tet::TetQuality& quality);
 struct SurfaceGradient {
   Points film;        // by the film's vertices
   VectorX thickness;  // by the walls' thickness; empty without walls
+  VectorX fillets;    // by the fillets' radii; empty without fillets
 };
 
 struct FrozenPart {
@@ -30,8 +32,9 @@ struct FrozenPart {
   SurfaceMesh unfilled;        // that no elements fit in, and why
   std::vector<Finding> findings;
   std::optional<frozen::FilmModel> film;
-  std::optional<walls::WallModel> walls;  // of a case that has some
-  TetMesh base_mesh;                      // ten-node, at the initial design
+  std::optional<fillets::FilletModel> fillets;  // of a case that has some
+  std::optional<walls::WallModel> walls;        // the same
+  TetMesh base_mesh;  // ten-node, at the initial design
   std::vector<char> curve_edge;
   std::optional<mesh_tet::MeshMotion> motion;
   std::optional<elastic::ElasticModel> elasticity;
@@ -41,6 +44,9 @@ struct FrozenPart {
   responses::Scans scans;
   std::optional<Adaptation> adaptation;
 
+  /// Points of the film, of the design of `inputs`, with the fillets.
+  Points rounded(const case_data::EvaluatedCase& inputs,
+                 const Points& points) const;
   /// The surface as meshed, on the film `points` of the design of `inputs`.
   QuadraticSurface surface(const case_data::EvaluatedCase& inputs,
                            const Points& points) const;

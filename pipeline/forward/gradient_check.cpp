@@ -1,6 +1,9 @@
 #include "pipeline/forward/gradient_check.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
 
 #include <fmt/format.h>
 
@@ -12,17 +15,62 @@ namespace meniscus::forward {
 
 namespace {
 
-std::vector<optimize::Variable> variables_at(const case_data::Case& input,
-                                             const VectorX& design) {
+/// What is moved: the design is `design + ways * x`.
+struct Moves {
   std::vector<optimize::Variable> variables;
-  for (std::size_t k = 0; k < input.design.size(); ++k) {
-    const case_data::DesignVariable& variable = input.design[k];
-    variables.push_back({.name = variable.name,
-                         .initial = design[static_cast<Eigen::Index>(k)],
-                         .lower = variable.lower,
-                         .upper = variable.upper});
+  Eigen::MatrixXd ways;
+};
+
+Moves by_variable(const case_data::Case& input, const VectorX& design) {
+  Moves moves;
+  moves.ways.setIdentity(design.size(), design.size());
+  for (Eigen::Index k = 0; k < design.size(); ++k) {
+    const case_data::DesignVariable& variable =
+        input.design[static_cast<std::size_t>(k)];
+    moves.variables.push_back({.name = variable.name,
+                               .initial = 0.0,
+                               .lower = variable.lower - design[k],
+                               .upper = variable.upper - design[k]});
   }
-  return variables;
+  return moves;
+}
+
+/// Parts of the variables' ranges, evenly from -1 to 1, away from a bound on
+/// which a variable lies; a variable of equal bounds rests.
+Moves along_directions(const case_data::Case& input, const VectorX& design,
+                       int count) {
+  constexpr double kAtBound = 1e-9;  // of the range
+  std::mt19937 random(1);            // the same in each run, on each machine
+  Moves moves;
+  moves.ways.resize(design.size(), count);
+  for (int d = 0; d < count; ++d) {
+    double back = std::numeric_limits<double>::infinity();
+    double on = back;
+    for (Eigen::Index k = 0; k < design.size(); ++k) {
+      const case_data::DesignVariable& v =
+          input.design[static_cast<std::size_t>(k)];
+      const double range = v.upper - v.lower;
+      const double below = design[k] - v.lower;
+      const double above = v.upper - design[k];
+      double way = (random() / 2147483648.0 - 1.0) * range;
+      if (below <= kAtBound * range) {
+        way = std::abs(way);
+      } else if (above <= kAtBound * range) {
+        way = -std::abs(way);
+      }
+      moves.ways(k, d) = way;
+      if (way != 0.0) {
+        on = std::min(on, (way > 0.0 ? above : below) / std::abs(way));
+        const double room = (way > 0.0 ? below : above) / std::abs(way);
+        back = std::min(back, room <= kAtBound ? 0.0 : room);
+      }
+    }
+    moves.variables.push_back({.name = fmt::format("direction {}", d + 1),
+                               .initial = 0.0,
+                               .lower = -back,
+                               .upper = on});
+  }
+  return moves;
 }
 
 void refuse_without_design(const case_data::Case& input,
@@ -44,7 +92,7 @@ void refuse_without_design(const case_data::Case& input,
 
 CaseGradientCheck check_case_gradient(
     const case_data::Case& input, const VectorX& design,
-    const optimize::GradientCheckOptions& options) {
+    const optimize::GradientCheckOptions& options, int directions) {
   refuse_without_design(input, design);
   if (input.analysis.solver == equations::SolverKind::Distributed) {
     throw InvalidInput(fmt::format(
@@ -94,8 +142,11 @@ CaseGradientCheck check_case_gradient(
   }
   // Differences see the same frozen model, so that both are derivatives of
   // one smooth function.
+  const Moves moves = directions > 0
+                          ? along_directions(input, design, directions)
+                          : by_variable(input, design);
   const optimize::VectorFunction function = [&](const VectorX& x) {
-    const Evaluation there = model.evaluate(x);
+    const Evaluation there = model.evaluate(design + moves.ways * x);
     optimize::VectorAnswer answer{.values = {}, .failure = there.failure};
     if (!there.failure) {
       answer.values.resize(static_cast<Eigen::Index>(wanted.size()));
@@ -106,8 +157,9 @@ CaseGradientCheck check_case_gradient(
     }
     return answer;
   };
-  check.report = optimize::check_gradient(variables_at(input, design), names,
-                                          function, gradient.jacobian, options);
+  check.report =
+      optimize::check_gradient(moves.variables, names, function,
+                               gradient.jacobian * moves.ways, options);
   return check;
 }
 

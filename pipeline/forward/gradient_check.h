@@ -18,12 +18,15 @@ struct CaseGradientCheck {
 };
 
 /// Freezes the case's model, differentiates at `design` (within the bounds) and
-/// compares. Throws InvalidInput for a case without design variables, without
-/// responses that have derivatives, or a design of another size; MeshError or
-/// SolverError when `design` cannot be evaluated.
+/// compares: by each variable, or along so many random `directions` of all of
+/// them together, the same in each run, each to the first bound that it meets
+/// (a few evaluations for a case of many variables; a wrong derivative shows in
+/// all of them). Throws InvalidInput for a case without design variables,
+/// without responses that have derivatives, or a design of another size;
+/// MeshError or SolverError when `design` cannot be evaluated.
 CaseGradientCheck check_case_gradient(
     const case_data::Case& input, const VectorX& design,
-    const optimize::GradientCheckOptions& options = {});
+    const optimize::GradientCheckOptions& options = {}, int directions = 0);
 
 /// The table for people: one line per response and variable, and the verdict.
 std::string gradient_check_text(const case_data::Case& input,

@@ -12,6 +12,7 @@
 #include "io/stl.h"
 #include "io/vtk_files.h"
 #include "pipeline/files/place_json.h"
+#include "pipeline/forward/fillets.h"
 
 namespace meniscus::forward {
 
@@ -165,7 +166,7 @@ void refuse_walls(const case_data::Case& input) {
 SurfaceMesh boundary_of(const case_data::EvaluatedCase& inputs,
                         const frozen::FilmModel& model, const Points& points) {
   if (inputs.walls.empty()) {
-    return model.boundary(points);
+    return model.boundary(rounded_anew(inputs.film_system, model, points));
   }
   const walls::WallModel walls = wall_model(inputs, model, points);
   return walls.fine(points, walls.thickness(inputs.walls));

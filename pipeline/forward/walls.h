@@ -37,7 +37,7 @@ std::vector<CaseWall> make_walls(const case_data::EvaluatedCase& inputs,
                                  const Points& points);
 
 /// The closed surface of the part on the film `points` of a state of `model`:
-/// walls made anew there, or what bounds its bodies.
+/// walls or fillets made anew there, or what bounds its bodies.
 SurfaceMesh boundary_of(const case_data::EvaluatedCase& inputs,
                         const frozen::FilmModel& model, const Points& points);
 

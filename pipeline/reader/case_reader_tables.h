@@ -102,9 +102,11 @@ void read_solids(CaseContext& context, const std::vector<CaseTable>& solids,
 void read_geometry(CaseContext& context, const toml::table& root,
                    case_data::Case& result);
 
-/// Walls and field energies; after the geometry.
+/// Walls, fillets and field energies; after the geometry, fillets after walls.
 void read_walls(CaseContext& context, const toml::table& root,
                 case_data::Case& result);
+void read_fillets(CaseContext& context, const toml::table& root,
+                  case_data::Case& result);
 void read_fields(CaseContext& context, const toml::table& root,
                  case_data::Case& result);
 

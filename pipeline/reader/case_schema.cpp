@@ -65,6 +65,7 @@ std::vector<TableSpec> make_tables() {
         {"material", K::Name, D::None, true,
          "what fills it; \"void\": nothing, and only its surfaces shape the "
          "part"}}},
+      fillet_table(),
       wall_table(),
       field_table(),
       {"resolution",
@@ -192,8 +193,8 @@ std::vector<TableSpec> make_tables() {
 
 bool can_repeat(const std::string& table) {
   static const std::vector<std::string> tables = {
-      "curves",  "films",     "solids",  "bodies", "walls",     "fields",
-      "support", "responses", "exclude", "load",   "constraint"};
+      "curves", "films",   "solids",    "bodies",  "fillets", "walls",
+      "fields", "support", "responses", "exclude", "load",    "constraint"};
   return std::find(tables.begin(), tables.end(), table) != tables.end();
 }
 

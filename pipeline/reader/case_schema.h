@@ -77,6 +77,7 @@ TableSpec curve_table();     // case_reader_curves.cpp
 TableSpec film_table();      // case_reader_films.cpp
 TableSpec solid_table();     // case_reader_films.cpp
 TableSpec wall_table();      // case_reader_walls.cpp
+TableSpec fillet_table();    // the same
 TableSpec field_table();     // case_reader_energies.cpp
 TableSpec bolt_table();      // case_reader_loads.cpp
 TableSpec load_table();      // the same

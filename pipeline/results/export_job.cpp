@@ -9,6 +9,7 @@
 #include "pipeline/case_films/film_options.h"
 #include "pipeline/case_films/film_start.h"
 #include "pipeline/forward/design_stages.h"
+#include "pipeline/forward/fillets.h"
 #include "pipeline/forward/walls.h"
 #include "pipeline/forward/worst_cases.h"
 #include "pipeline/store/refreeze.h"
@@ -72,11 +73,12 @@ const SettledFilm& ExportJob::film() {
 
 SurfaceMesh ExportJob::bodies_surface() {
   const SettledFilm& settled = film();
+  const Points& points = settled.state.points;
   return whole::whole_surface(
-      input_,
-      inputs_.walls.empty()
-          ? settled.model.solids(settled.state.points)
-          : forward::boundary_of(inputs_, settled.model, settled.state.points));
+      input_, inputs_.walls.empty()
+                  ? settled.model.solids(forward::rounded_anew(
+                        inputs_.film_system, settled.model, points))
+                  : forward::boundary_of(inputs_, settled.model, points));
 }
 
 namespace {

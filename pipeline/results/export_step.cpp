@@ -14,6 +14,7 @@
 #include "evolve/films/solid_frame.h"
 #include "evolve/frozen/film_model.h"
 #include "pipeline/case_data/case_symmetry.h"
+#include "pipeline/forward/fillets.h"
 #include "pipeline/results/rim_pieces.h"
 
 namespace meniscus::results {
@@ -25,12 +26,20 @@ constexpr double kMostBreak = 1.0;        // [degree]
 constexpr std::size_t kMostPlanes = 200;  // of a solid from a file
 constexpr double kFlatRing = 1e-7;        // of the part's size
 
+/// Its rim leaves the curve.
+bool is_rounded(const films::FilmSystem& system, const std::string& curve) {
+  return std::any_of(system.fillets.begin(), system.fillets.end(),
+                     [&](const films::FilletSpec& fillet) {
+                       return fillet.curve == curve && fillet.radius > 0.0;
+                     });
+}
+
 std::vector<solid::NamedRim> rims_of(const films::FilmSystem& system,
                                      const frozen::FilmModel& model) {
   std::vector<solid::NamedRim> rims;
   for (const curves::Curve& curve : system.curves) {
     std::vector<solid::RimPiece> pieces = rim_pieces(curve.shape);
-    if (!pieces.empty()) {
+    if (!pieces.empty() && !is_rounded(system, curve.name)) {
       rims.push_back({curve.name, solid::RimCurve(std::move(pieces)),
                       model.rim(curve.name)});
     }
@@ -294,7 +303,11 @@ solid::Brep whole_solid(solid::Brep brep, const StepExport& options) {
 void export_step(const std::filesystem::path& file,
                  const films::FilmSystem& system, const StepExport& options) {
   frozen::FilmModel model = settled(system, options.edge);
-  SurfaceMesh mesh = model.boundary(model.reference().points);
+  const auto rounded = [&](const frozen::FilmModel& settled) {
+    return settled.boundary(
+        forward::rounded_anew(system, settled, settled.reference().points));
+  };
+  SurfaceMesh mesh = rounded(model);
   const step::StepOptions names{.name = options.title, .unit = options.unit};
   if (options.faceted) {
     step::write_step(file, whole_solid(solid::faceted_solid(mesh), options),
@@ -302,8 +315,10 @@ void export_step(const std::filesystem::path& file,
     return;
   }
   const films::FilmSystem held = held_where_it_slid(system, model);
-  model = settled(for_smooth_films(held, mesh), options.edge);
-  mesh = model.boundary(model.reference().points);
+  model =
+      settled(for_smooth_films(held, model.boundary(model.reference().points)),
+              options.edge);
+  mesh = rounded(model);
   solid::FilmSolidInput input{mesh, rims_of(held, model), {}, {}, options.edge};
   for (const films::CapSpec& cap : held.caps) {
     if (cap.solid >= 0) {

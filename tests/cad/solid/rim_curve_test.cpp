@@ -53,6 +53,9 @@ TEST(RimCurve, SplineThroughPointsClosesSmoothly) {
   for (const Vec3& p : points) {
     EXPECT_NEAR((curve.point(curve.nearest(p)) - p).norm(), 0.0, kTolerance);
   }
+  // The end is also the beginning: places just before it are near it.
+  const Vec3 before = curve.point(curve.length() - 1e-3);
+  EXPECT_NEAR(curve.nearest(before), curve.length() - 1e-3, kTolerance);
   const solid::RimPiece& piece = curve.piece(0);
   EXPECT_NEAR((solid::point_of(piece.curve, piece.first) -
                solid::point_of(piece.curve, piece.last))

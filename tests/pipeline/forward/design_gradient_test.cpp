@@ -8,6 +8,7 @@
 #include "pipeline/case_data/response_entries.h"
 #include "pipeline/forward/forward_model.h"
 #include "pipeline/forward/gradient_check.h"
+#include "pipeline/reader/case_reader.h"
 #include "tests/support/case_text.h"
 #include "tests/support/rim_case.h"
 
@@ -176,6 +177,29 @@ void expect_exact(const std::string& text, const VectorX& move) {
 
 TEST(DesignGradient, IsExactForEveryResponseAtTheFrozenDesign) {
   expect_exact(every_response(), VectorX::Zero(3));
+}
+
+// On a bound a direction leads inwards, and differences are one-sided.
+TEST(DesignGradient, IsExactAlongDirectionsOfAllVariablesToo) {
+  const reader::CaseReading reading = reader::read_case_file(
+      MENISCUS_SOURCE_DIR "/cases/two_arm_sized/case.toml",
+      {"resolution.fea=20", "resolution.film=10"});
+  ASSERT_THAT(reading.problems, testing::IsEmpty());
+  case_data::Case input = *reading.input;
+  const VectorX design = case_data::initial_design(input);
+  for (const bool on_a_bound : {false, true}) {
+    if (on_a_bound) {
+      input.design[1].upper = design[1];
+    }
+    const forward::CaseGradientCheck check =
+        forward::check_case_gradient(input, design, {}, on_a_bound ? 1 : 2);
+    EXPECT_TRUE(check.report.passed)
+        << forward::gradient_check_text(input, check);
+    EXPECT_EQ(check.report.rows.size(),
+              (on_a_bound ? 1 : 2) * input.responses.size());
+    EXPECT_EQ(check.report.rows[0].variable, "direction 1");
+    EXPECT_NE(check.report.rows[0].given, check.report.rows[1].given);
+  }
 }
 
 TEST(DesignGradient, OfEigenvaluesIsExact) {

@@ -54,12 +54,16 @@ TEST(CaseSymmetry, ClosesAndHoldsWhatEndsInThePlane) {
   EXPECT_EQ(input.responses[1].images, 2);
 }
 
+/// Whose film a solid in the plane holds.
+std::string held_half() {
+  return changed(changed(half(), "[\"skin\", ", "[\"skin\", \"foot_pad\", "),
+                 "[solids.head_pad]",
+                 "[solids.foot_pad]\nkind = \"cap\"\ncurve = \"base\"\n\n"
+                 "[solids.head_pad]");
+}
+
 TEST(CaseSymmetry, ASolidOfTheCaseInThePlaneIsACutFaceToo) {
-  const case_data::Case input = case_of(
-      changed(changed(half(), "[\"skin\", ", "[\"skin\", \"foot_pad\", "),
-              "[solids.head_pad]",
-              "[solids.foot_pad]\nkind = \"cap\"\ncurve = \"base\"\n\n"
-              "[solids.head_pad]"));
+  const case_data::Case input = case_of(held_half());
   EXPECT_THAT(case_data::cut_faces(input), ElementsAre("foot_pad"));
   EXPECT_THAT(input.bodies[0].enclosed_by,
               ElementsAre("skin", "foot_pad", "head_pad"));
@@ -138,6 +142,17 @@ TEST(CaseSymmetry, WhatIsNotSymmetricIsTold) {
   expect_problem(changed(half(), "force = [0, 0, \"load\"]",
                          "size = \"load\", at = [0, 0, 60]"),
                  "a load of given 'size'");
+}
+
+TEST(CaseSymmetry, FilletsAreOfCurvesOutsideThePlanes) {
+  const auto rounded = [](const std::string& curve) {
+    return changed(held_half(), "[bodies.part]",
+                   "[fillets.root]\ncurves = [\"" + curve +
+                       "\"]\nradius = 2\n\n[bodies.part]");
+  };
+  EXPECT_THAT(problems_of(rounded("head")), IsEmpty());
+  expect_problem(rounded("base"),
+                 "a fillet along 'base', which lies in plane 1 of symmetry");
 }
 
 TEST(CaseSymmetry, ResponsesThatAHalfHasNotAreTold) {
