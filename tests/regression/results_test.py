@@ -141,6 +141,16 @@ class Results(ProgramTest):
         for load_case, key in (("push", "direction"),
                                ("push_x", "unit_load")):
             result["stress"]["push"][key] = worst["stress"][load_case][key]
+        # A half, pulled: what lies in the plane is held by it.
+        half = (CASE.split("[responses.sway]")[0]
+                .replace('{ on = "sole", fix = "xyz" }',
+                         '{ on = "top", fix = "xy" }')
+                .replace('["load", 0, 0]', '[0, 0, "load"]') +
+                '[responses]\nmass = { kind = "mass" }\n[symmetry]\n'
+                'planes = [{ at = [0, 0, 0], normal = [0, 0, -1] }]\n' +
+                '[study]\nkind = "analyse"\n')
+        _, halved = self.run_case(half, "half")
+        result["symmetry"] = halved["symmetry"]
         rows = documented()
         self.assertEqual(set(result) - ELSEWHERE,
                          set(rows) - set(OTHER_STUDIES) - ELSEWHERE)
