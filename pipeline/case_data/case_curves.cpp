@@ -11,6 +11,7 @@
 #include "core/geometry/surface_mesh.h"
 #include "evolve/curves/curve_contact.h"
 #include "evolve/films/shared_sides.h"
+#include "evolve/start/disk_fill.h"
 #include "pipeline/case_data/case_features.h"
 
 namespace meniscus::case_data {
@@ -191,21 +192,13 @@ Points rim_places(const curves::CurveShape& shape) {
   return curves::points_at(shape, t);
 }
 
-Vec3 area_of(const Points& loop) {
-  Vec3 area = Vec3::Zero();
-  for (std::size_t k = 0; k < loop.size(); ++k) {
-    area += (loop[k] - loop[0]).cross(loop[(k + 1) % loop.size()] - loop[0]);
-  }
-  return area;
-}
-
 /// Faces of several planes may have one name.
 bool share_plane(const curves::CurveShape& one,
                  const curves::CurveShape& other) {
   constexpr double kOffPlane = 1e-6;  // of the size
   const Points a = rim_places(one);
   const Points b = rim_places(other);
-  const Vec3 normal = area_of(a).normalized();
+  const Vec3 normal = start::polygon_area_vector(a).normalized();
   const double off = kOffPlane * (bounding_diagonal(a) + bounding_diagonal(b));
   const auto lies = [&](const Vec3& p) {
     return std::abs(normal.dot(p - a[0])) <= off;
@@ -284,7 +277,7 @@ enum class Nesting { Beside, Within, Around };
 
 /// Does the loop wind around the point, both in a plane?
 bool winds_around(const Points& loop, const Vec3& at) {
-  const Vec3 normal = area_of(loop).normalized();
+  const Vec3 normal = start::polygon_area_vector(loop).normalized();
   double turned = 0.0;
   for (std::size_t k = 0; k < loop.size(); ++k) {
     const Vec3 from = loop[k] - at;

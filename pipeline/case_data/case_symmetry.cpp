@@ -130,6 +130,17 @@ std::vector<std::string> cut_faces(const Case& input) {
   return result;
 }
 
+std::vector<std::string> cuts_of_whole(const Case& input, std::size_t plane) {
+  std::vector<std::string> result;
+  for (const CapEntry& cap : input.caps) {
+    if (cap.symmetry == static_cast<int>(plane)) {
+      result.push_back(cap.spec.name);
+      result.push_back(image_name(cap.spec.name));
+    }
+  }
+  return result;
+}
+
 std::string image_name(const std::string& surface) {
   constexpr const char* kImage = "/image";
   return surface.ends_with(kImage) ? surface : surface + kImage;

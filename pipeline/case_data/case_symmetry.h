@@ -39,6 +39,10 @@ std::vector<std::string> cut_faces(const Case& input);
 /// likewise.
 std::string image_name(const std::string& surface);
 
+/// The names of the faces in a plane (its place in `symmetry`) and of their
+/// images in other planes: what is inside the whole.
+std::vector<std::string> cuts_of_whole(const Case& input, std::size_t plane);
+
 /// The solids of the case and, with planes of symmetry, their images.
 std::vector<std::string> solids_of_whole(const Case& input);
 

@@ -83,16 +83,10 @@ void wall_step(ExportJob& job, const fs::path& file, bool faceted) {
 
 std::vector<step::MirrorPlane> mirrors_of(const case_data::Case& input) {
   std::vector<step::MirrorPlane> mirrors;
-  for (const case_data::SymmetryPlane& plane : input.symmetry) {
-    mirrors.push_back({plane.at, plane.normal, {}});
-  }
-  for (const case_data::CapEntry& cap : input.caps) {
-    if (cap.symmetry >= 0) {
-      std::vector<std::string>& cuts =
-          mirrors[static_cast<std::size_t>(cap.symmetry)].cuts;
-      cuts.push_back(cap.spec.name);
-      cuts.push_back(case_data::image_name(cap.spec.name));
-    }
+  for (std::size_t p = 0; p < input.symmetry.size(); ++p) {
+    const case_data::SymmetryPlane& plane = input.symmetry[p];
+    mirrors.push_back(
+        {plane.at, plane.normal, case_data::cuts_of_whole(input, p)});
   }
   return mirrors;
 }

@@ -23,14 +23,8 @@ class Mirror {
   Mirror(const case_data::Case& input, std::size_t plane)
       : plane_(input.symmetry[plane]),
         turn_(Mat3::Identity() -
-              2.0 * plane_.normal * plane_.normal.transpose()) {
-    for (const case_data::CapEntry& cap : input.caps) {
-      if (cap.symmetry == static_cast<int>(plane)) {
-        cut_.push_back(cap.spec.name);
-        cut_.push_back(case_data::image_name(cap.spec.name));
-      }
-    }
-  }
+              2.0 * plane_.normal * plane_.normal.transpose()),
+        cut_(case_data::cuts_of_whole(input, plane)) {}
 
   bool cuts(const std::string& label) const {
     return std::find(cut_.begin(), cut_.end(), label) != cut_.end();
