@@ -94,10 +94,15 @@ class Bulge {
     return sum;
   }
 
-  void raise(const Vec3& by, films::FilmComplex& complex) const {
+  RaisedDisk raise(int label, const Vec3& by,
+                   films::FilmComplex& complex) const {
+    RaisedDisk raised{.surface = label};
     for (const auto& [v, height] : height_) {
       complex.mesh.points[v] += height * by;
+      raised.vertices.push_back(v);
+      raised.moves.emplace_back(height * by);
     }
+    return raised;
   }
 
  private:
@@ -121,7 +126,9 @@ Points rim_of(const films::FilmComplex& complex, const std::string& curve) {
 
 }  // namespace
 
-void raise_disks(const films::FilmSystem& system, films::FilmComplex& complex) {
+std::vector<RaisedDisk> raise_disks(const films::FilmSystem& system,
+                                    films::FilmComplex& complex) {
+  std::vector<RaisedDisk> result;
   std::set<std::string> raised;
   for (const films::BodySpec& body : system.bodies) {
     for (const auto& [curve, fillings] : fillings_of(system, body)) {
@@ -136,7 +143,8 @@ void raise_disks(const films::FilmSystem& system, films::FilmComplex& complex) {
         if (!filling.film || !raised.insert(filling.name).second) {
           continue;
         }
-        const Bulge bulge(complex, complex.mesh.label_of(filling.name));
+        const int label = complex.mesh.label_of(filling.name);
+        const Bulge bulge(complex, label);
         if (bulge.empty()) {
           continue;
         }
@@ -146,11 +154,37 @@ void raise_disks(const films::FilmSystem& system, films::FilmComplex& complex) {
           height = std::min(*body.volume / films / bulge.volume(normal),
                             kMostHeight * bulge.width());
         }
-        bulge.raise(side * height * normal, complex);
+        result.push_back(bulge.raise(label, side * height * normal, complex));
         side = -side;
       }
     }
   }
+  return result;
+}
+
+bool turn_shared_disks(const std::vector<RaisedDisk>& raised,
+                       films::FilmComplex& complex) {
+  bool turned = false;
+  for (const RaisedDisk& disk : raised) {
+    int sides = 0;
+    int balance = 0;  // of signs: 0 where bodies lie on both sides
+    for (const films::ComplexBody& body : complex.bodies) {
+      for (const films::BodySide& side : body.sides) {
+        if (side.surface == disk.surface) {
+          ++sides;
+          balance += side.sign;
+        }
+      }
+    }
+    if (sides != 2 || balance == 0) {
+      continue;
+    }
+    for (std::size_t k = 0; k < disk.vertices.size(); ++k) {
+      complex.mesh.points[disk.vertices[k]] -= 2.0 * disk.moves[k];
+    }
+    turned = true;
+  }
+  return turned;
 }
 
 }  // namespace meniscus::start

@@ -75,7 +75,7 @@ class StartBuilder {
     for (const films::CapSpec& cap : system_.caps) {
       add_cap(cap);
     }
-    raise_disks(system_, result_);
+    const std::vector<RaisedDisk> raised = raise_disks(system_, result_);
     refuse_twins();
     for (const films::BodySpec& body : system_.bodies) {
       result_.bodies.push_back(films::make_body(body, result_.mesh));
@@ -84,6 +84,10 @@ class StartBuilder {
       films::require_body(system_, cap.name);
     }
     films::orient_bodies(result_);
+    if (turn_shared_disks(raised, result_)) {
+      films::orient_bodies(result_);
+    }
+    films::refuse_overlaps(result_);
     add_walls();
     add_fields();
     const std::vector<double> tensions =

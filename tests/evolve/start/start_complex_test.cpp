@@ -158,6 +158,49 @@ TEST(StartComplex, BodiesShareABulkheadWithOppositeSigns) {
   EXPECT_EQ(product, -1);
 }
 
+/// A cylinder with a hollow in its bottom, whose rim runs either way around.
+films::FilmSystem hollowed(double way) {
+  films::FilmSystem system = systems::cylinder(2.0);
+  system.curves.push_back(
+      {"rim", curves::Circle{Vec3(0.2, 0.0, 0.0), way * Vec3::UnitZ(), 0.5}});
+  system.films.push_back({"vault", films::FilmKind::Disk, {"rim"}, 1.0});
+  system.caps[0].more = {"rim"};
+  system.caps.push_back({"lid", "rim"});
+  system.bodies[0].enclosed_by.push_back("vault");
+  system.bodies.push_back({"hollow", {"vault", "lid"}, 0.15, {}, true});
+  return system;
+}
+
+TEST(StartComplex, HollowsGoIntoTheBodyThatTheirFilmIsOf) {
+  for (const double way : {1.0, -1.0}) {
+    const films::FilmSystem system = hollowed(way);
+    const films::FilmComplex complex = start::build_start(system, 0.2);
+    expect_sound(complex);
+    double together = 0.0;
+    for (const films::ComplexBody& body : complex.bodies) {
+      together += enclosed_volume(films::body_surface(complex, body));
+    }
+    const films::FilmComplex whole =
+        start::build_start(systems::cylinder(2.0), 0.2);
+    EXPECT_NEAR(together,
+                enclosed_volume(films::body_surface(whole, whole.bodies[0])),
+                0.02);
+    const double hollow =
+        enclosed_volume(films::body_surface(complex, complex.bodies[1]));
+    EXPECT_NEAR(hollow, 0.15, 0.01);
+    for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
+      EXPECT_GT(complex.mesh.points[v].z(), -1e-9);
+    }
+  }
+}
+
+TEST(StartComplex, RefusesBodiesThatLieInEachOther) {
+  films::FilmSystem system = systems::cylinder(2.0);
+  system.bodies.push_back({"again", {"film", "bottom", "top"}, 4.0, {}});
+  EXPECT_THAT(refusal(system), AllOf(HasSubstr("'body' and 'again'"),
+                                     HasSubstr("the same side of 'film'")));
+}
+
 TEST(StartComplex, BranchTakesStraightSidesToo) {
   films::FilmSystem system;
   curves::Rectangle base;
