@@ -41,7 +41,7 @@ namespace {
 
 constexpr int kMostTries = 60;
 constexpr double kGrow = 1.06;
-constexpr double kLongLine = 0.15;  // of a tube's end: long enough
+constexpr double kLongLine = 0.15;  // of the shorter end: long enough
 constexpr double kShrink = 0.85;    // of a tube's measure, from try to try
 
 /// Loops of the refined film, in the rims' order.
@@ -84,7 +84,16 @@ std::optional<Tube> tube_of(const SplitFilm& split, int cell,
   return Tube{found[first ? 0 : 1], found[first ? 1 : 0]};
 }
 
-/// The line between two tubes that is the shortest share of a tube's end.
+double length_of(const std::vector<int>& loop, const Points& points) {
+  double length = 0.0;
+  for (std::size_t k = 0; k < loop.size(); ++k) {
+    length += (points[loop[(k + 1) % loop.size()]] - points[loop[k]]).norm();
+  }
+  return length;
+}
+
+/// The line between two tubes that is the shortest share of the shorter of
+/// their ends: beside a long rim a small one's lines are short shares of its.
 struct ShortLine {
   double share = 1.0;
   std::array<int, 2> tubes{-1, -1};
@@ -99,6 +108,10 @@ ShortLine shortest_line(const Tubes& tubes) {
           tubes.split.cell[f];
     }
   }
+  std::vector<double> ends;
+  for (const Tube& tube : tubes.tubes) {
+    ends.push_back(length_of(tube.top, mesh.points));
+  }
   ShortLine shortest;
   for (std::size_t tube = 0; tube < tubes.tubes.size(); ++tube) {
     std::vector<int> top = tubes.tubes[tube].top;
@@ -106,29 +119,28 @@ ShortLine shortest_line(const Tubes& tubes) {
       return count_in({v}, tubes.nodes) > 0;
     });
     std::rotate(top.begin(), node, top.end());
-    double whole = 0.0;
     std::vector<std::pair<double, int>> lines;  // length, other tube
     for (std::size_t k = 0; k < top.size(); ++k) {
       const int next = top[(k + 1) % top.size()];
       if (count_in({top[k]}, tubes.nodes) > 0) {
         lines.emplace_back(0.0, cell_at.at({next, top[k]}));
       }
-      const double length = (mesh.points[next] - mesh.points[top[k]]).norm();
-      lines.back().first += length;
-      whole += length;
+      lines.back().first += (mesh.points[next] - mesh.points[top[k]]).norm();
     }
     for (const auto& [length, other] : lines) {
-      if (length / whole < shortest.share) {
-        shortest = {length / whole, {static_cast<int>(tube), other}};
+      const double share = length / std::min(ends[tube], ends[other]);
+      if (share < shortest.share) {
+        shortest = {share, {static_cast<int>(tube), other}};
       }
     }
   }
   return shortest;
 }
 
-/// Tubes by the greatest measure. One that lies between others, so that these
-/// do not meet, has its measure made less until they do; two that hardly meet
-/// have theirs made greater.
+/// Tubes by the greatest measure. Where one lies between others, so that these
+/// do not meet, theirs are made greater until they do, or, where all have
+/// nodes, its own less: theirs fall off with distance, so that other lines
+/// stay. Two that hardly meet have theirs made greater.
 Tubes cut_into_tubes(const SplitFilm& whole) {
   // Harmonic measure w_k: 1 on rim k, 0 on the others.
   const Eigen::MatrixXd measures = harmonic_measures(whole);
@@ -143,21 +155,27 @@ Tubes cut_into_tubes(const SplitFilm& whole) {
         split_by_greatest(result.split, measures * factors.asDiagonal());
     result.split.sector.assign(result.split.cell.size(), 0);
     // Each cell must be an annulus with two nodes or more at its top; one with
-    // more loops keeps others apart and is given a lesser factor.
-    bool done = true;
+    // more loops keeps others apart.
+    std::vector<int> between;
+    std::vector<int> apart;
     for (int k = 0; k < count; ++k) {
       std::size_t loops = 0;
       const std::optional<Tube> tube = tube_of(result.split, k, loops);
-      if (loops > 2) {
-        factors[k] *= kShrink;
+      if (!tube) {
+        between.push_back(k);
+      } else if (count_in(result.nodes, tube->top) < 2) {
+        apart.push_back(k);
+      } else {
+        result.tubes.push_back(*tube);
       }
-      if (!tube || count_in(result.nodes, tube->top) < 2) {
-        done = false;
-        continue;
-      }
-      result.tubes.push_back(*tube);
     }
-    if (!done) {
+    for (const int k : apart) {
+      factors[k] /= kShrink;
+    }
+    for (const int k : between) {
+      factors[k] *= apart.empty() ? kShrink : 1.0;
+    }
+    if (!between.empty() || !apart.empty()) {
       continue;
     }
     // Lengthen the shortest line between two tubes; the best cut is kept.

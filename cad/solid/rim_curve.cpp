@@ -1,7 +1,9 @@
 #include "cad/solid/rim_curve.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include <Eigen/Geometry>
@@ -46,29 +48,35 @@ double nearest_from(const RimPiece& piece, const Vec3& p, double t) {
   return t;
 }
 
-/// The same from the best of samples; a curve of one piece ends where it
-/// begins, and a sample there is as good at either end.
+/// The same from samples that are nearer than both beside them: where a curve
+/// comes near itself, the nearest of all may lie on its other side. Either end
+/// counts, for a curve of one piece ends where it begins.
 double nearest_on(const RimPiece& piece, const Vec3& p) {
+  std::array<double, kSamples + 1> off = {};
+  const auto at = [&](int k) {
+    return piece.first + (piece.last - piece.first) * k / kSamples;
+  };
+  for (int k = 0; k <= kSamples; ++k) {
+    off[k] = (point_of(piece.curve, at(k)) - p).norm();
+  }
+  // Between two samples the curve goes on by a sample's length at most.
+  const double least = *std::min_element(off.begin(), off.end());
+  const double reach = least + length_of(piece) / kSamples;
   double best = piece.first;
-  double distance = (point_of(piece.curve, best) - p).squaredNorm();
-  for (int k = 1; k <= kSamples; ++k) {
-    const double t = piece.first + (piece.last - piece.first) * k / kSamples;
-    const double d = (point_of(piece.curve, t) - p).squaredNorm();
+  double distance = std::numeric_limits<double>::infinity();
+  for (int k = 0; k <= kSamples; ++k) {
+    if (off[k] > reach || (k > 0 && off[k - 1] < off[k]) ||
+        (k < kSamples && off[k + 1] < off[k])) {
+      continue;
+    }
+    const double t = nearest_from(piece, p, at(k));
+    const double d = (point_of(piece.curve, t) - p).norm();
     if (d < distance) {
       distance = d;
       best = t;
     }
   }
-  const double found = nearest_from(piece, p, best);
-  const double end = best == piece.first ? piece.last : piece.first;
-  if (best != piece.first && best != piece.last) {
-    return found;
-  }
-  const double other = nearest_from(piece, p, end);
-  return (point_of(piece.curve, other) - p).norm() <
-                 (point_of(piece.curve, found) - p).norm()
-             ? other
-             : found;
+  return best;
 }
 
 }  // namespace

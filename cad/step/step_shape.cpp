@@ -110,7 +110,12 @@ Handle(Geom_Curve) ShapeBuilder::curve_of(const solid::BrepEdge& edge,
     poles.SetValue(k + 1, to_point(scale_ * spline.poles[k]));
   }
   const Knots knots = to_knots(spline.knots);
-  return new Geom_BSplineCurve(poles, knots.values, knots.multiplicities, 3);
+  Handle(Geom_BSplineCurve) curve =
+      new Geom_BSplineCurve(poles, knots.values, knots.multiplicities, 3);
+  // Closed ones go on beyond their ends, where a reader that looks for a vertex
+  // finds it twice.
+  curve->Segment(first, last);
+  return {curve};
 }
 
 void ShapeBuilder::add_edges() {

@@ -12,6 +12,7 @@
 #include <Interface_Static.hxx>
 #include <STEPCAFControl_Controller.hxx>
 #include <STEPCAFControl_Writer.hxx>
+#include <STEPControl_Reader.hxx>
 #include <STEPControl_Writer.hxx>
 #include <ShapeAnalysis_ShapeTolerance.hxx>
 #include <Standard_Failure.hxx>
@@ -40,6 +41,8 @@ namespace {
 // Of the integral over a face: the plain rule is a percent off in planes that
 // are B-splines.
 constexpr double kVolumeError = 1e-7;
+constexpr double kReadVolumeError = 1e-4;  // the same, when it is read again
+constexpr double kSameVolume = 3e-3;  // what readers may change [of the volume]
 
 /// What BRepCheck_Analyzer finds first; empty for a valid shape.
 std::string fault_of(const StepShape& shape) {
@@ -99,6 +102,37 @@ std::string ascii(const std::string& text) {
     result += c >= ' ' && c <= '~' ? c : '_';
   }
   return result;
+}
+
+/// Other programs read the file and not the shape: throws MeshError unless it
+/// comes back with as many faces, valid, and of the same volume.
+void check_by_reading(const std::string& text, const StepShape& shape,
+                      double volume) {
+  STEPControl_Reader reader;
+  std::istringstream file(text);
+  const bool found = reader.ReadStream("part.step", file) == IFSelect_RetDone &&
+                     reader.TransferRoots() > 0;
+  std::size_t faces = 0;
+  GProp_GProps properties;
+  bool valid = false;
+  if (found) {
+    const TopoDS_Shape back = reader.OneShape();
+    for (TopExp_Explorer at(back, TopAbs_FACE); at.More(); at.Next()) {
+      ++faces;
+    }
+    valid = BRepCheck_Analyzer(back).IsValid();
+    BRepGProp::VolumeProperties(back, properties, kReadVolumeError);
+  }
+  if (!valid || faces != shape.faces.size() ||
+      std::abs(properties.Mass() - volume) > kSameVolume * std::abs(volume)) {
+    throw MeshError(fmt::format(
+        "read again, the file is {} solid of {} faces and {:.6g} mm3 where {} "
+        "faces of {:.6g} mm3 were written; export it as step-faceted, or "
+        "settle "
+        "it with another --edge",
+        valid ? "a" : "no valid", faces, properties.Mass(), shape.faces.size(),
+        volume));
+  }
 }
 
 StepShape shape_of(const solid::Brep& brep, double scale) {
@@ -168,6 +202,7 @@ StepReport write_step(const std::filesystem::path& path,
   text_writer.SendModel(protocol);
   std::ostringstream text;
   text_writer.Print(text);
+  check_by_reading(text.str(), shape, properties.Mass());
   write_file(path, text.str());
   XCAFApp_Application::GetApplication()->Close(document);
   return report;

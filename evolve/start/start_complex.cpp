@@ -19,6 +19,7 @@
 #include "evolve/start/band_rows.h"
 #include "evolve/start/branch_facets.h"
 #include "evolve/start/cap_faces.h"
+#include "evolve/start/close_rims.h"
 #include "evolve/start/disk_fill.h"
 #include "evolve/start/facet_start.h"
 #include "evolve/start/fill_patch.h"
@@ -41,10 +42,10 @@ struct Rim {
 class StartBuilder {
  public:
   StartBuilder(const films::FilmSystem& system, double edge)
-      : system_(system),
+      : system_(with_rims_apart(system, edge)),
         edge_(edge),
-        shared_(system.curves),
-        solids_(system, edge) {}
+        shared_(system_.curves),
+        solids_(system_, edge) {}
 
   films::FilmComplex build() {
     check_names();
@@ -503,7 +504,7 @@ class StartBuilder {
     }
   }
 
-  const films::FilmSystem& system_;
+  films::FilmSystem system_;
   double edge_;
   films::FilmComplex result_;
   std::map<std::string, Rim> rims_;

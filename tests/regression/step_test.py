@@ -98,6 +98,30 @@ enclosed_by = ["skin", "foot_pad", "head_pad"]
 material = "aluminium"
 volume = "40 * pi * 20^2%s"
 """
+ROUND = """kind = "circle"
+center = [0, 0, 0]
+normal = [0, 0, -1]
+radius = 20
+"""
+SPLINE = """kind = "spline"
+points = [[20, 0, 0], [15, 14, 0], [0, 22, 0], [-15, 14, 0], [-22, 0, 0],
+          [-12, -16, 0], [0, -20, 0], [16, -12, 0]]
+"""
+VASE = """[curves.head]
+kind = "copy"
+of = "foot"
+move = [0, 0, 25]
+[films.skin]
+kind = "loft"
+curves = ["foot", "head"]
+[solids.head_pad]
+kind = "cap"
+curve = "head"
+[bodies.part]
+enclosed_by = ["skin", "foot_pad", "head_pad"]
+material = "aluminium"
+volume = 32000
+"""
 DROP = """[films.skin]
 kind = "disk"
 curves = ["foot"]
@@ -343,10 +367,10 @@ Save "{can}";
         area = float(re.search(rf"area {NUMBER}", done.stdout).group(1))
         self.assertLess(abs(area / 599.179697580228 - 1.0), MOST_FLAT)
 
-    def simple(self, films):
+    def simple(self, films, head=HEAD):
         """The exported part of a small case and what was said of it."""
         path = self.folder / "simple.toml"
-        path.write_text(HEAD + films)
+        path.write_text(head + films)
         run = self.folder / "simple"
         self.expect(self.call("run", path, "--out", run, "--no-pictures",
                               "--quiet"), 0)
@@ -365,6 +389,13 @@ Save "{can}";
         file, said = self.simple(POST % " * 1.02")
         self.assertIn("4 B-spline faces, 2 planes, 0 cylinders", said)
         self.assertEqual(surface_kinds(file), {"Plane": 2, "BSpline surface": 4})
+
+    def test_closed_splines_are_read_as_they_are(self):
+        file, said = self.simple(VASE, HEAD.replace(ROUND, SPLINE))
+        self.assertIn("4 B-spline faces, 2 planes", said)
+        count, volume = gmsh_volume(file)
+        self.assertEqual(count, 1)
+        self.assertAlmostEqual(volume / 32000, 1, delta=1e-4)
 
     def test_drop_is_a_sphere(self):
         file, said = self.simple(DROP)

@@ -63,6 +63,22 @@ TEST(RimCurve, SplineThroughPointsClosesSmoothly) {
               0.0, kTolerance);
 }
 
+/// A waist much narrower than the samples from which places are looked for.
+TEST(RimCurve, PlacesBesideAWaistAreOnTheirOwnSide) {
+  Points points;
+  for (int k = 0; k < 160; ++k) {
+    const double angle = kWholeTurn * k / 160.0;
+    const double half = 0.02 + 0.98 * std::pow(std::cos(angle), 2);
+    points.emplace_back(4.0 * std::cos(angle) + 0.1 * std::sin(angle),
+                        half * std::sin(angle), 0.0);
+  }
+  const solid::RimCurve curve = solid::rim_through(points);
+  for (int k = 0; k < 1000; ++k) {
+    const double s = curve.length() * (k + 0.31) / 1000.0;
+    EXPECT_NEAR(curve.nearest(curve.point(s)), s, 1e-6) << k;
+  }
+}
+
 TEST(RimCurve, CornersStayCorners) {
   Points points;
   for (int side = 0; side < 4; ++side) {

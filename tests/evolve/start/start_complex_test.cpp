@@ -201,6 +201,28 @@ TEST(StartComplex, RefusesBodiesThatLieInEachOther) {
                                      HasSubstr("the same side of 'film'")));
 }
 
+/// Chords of the outer rim cut into the inner one, unless they are shorter.
+TEST(StartComplex, RimsCloserThanTheirChordsBendAreCutFinely) {
+  films::FilmSystem system;
+  system.curves = {
+      {"outer", curves::Circle{Vec3::Zero(), Vec3::UnitZ(), 10.0}},
+      {"inner", curves::Circle{Vec3(0, 0, 3), Vec3::UnitZ(), 9.8}}};
+  system.films = {{"film", films::FilmKind::Disk, {"outer", "inner"}, 1.0}};
+  const films::FilmComplex complex = start::build_start(system, 5.0);
+  test_films::check_complex(complex);
+  EXPECT_EQ(systems::euler_characteristic(complex.mesh), 0);
+  for (const curves::Curve& curve : complex.curves) {
+    EXPECT_LT(curve.fineness, 1.0);
+  }
+  // Rims that are apart stay as they were, and such that do cross are told.
+  std::get<curves::Circle>(system.curves[1].shape).radius = 5.0;
+  for (const curves::Curve& curve : start::build_start(system, 5.0).curves) {
+    EXPECT_EQ(curve.fineness, 1.0);
+  }
+  std::get<curves::Circle>(system.curves[1].shape).center.x() = 6.0;
+  EXPECT_THROW(start::build_start(system, 5.0), Error);
+}
+
 TEST(StartComplex, BranchTakesStraightSidesToo) {
   films::FilmSystem system;
   curves::Rectangle base;
