@@ -190,17 +190,22 @@ TetMesh with_image(const TetMesh& drawn, const NodeImages& at,
   return whole;
 }
 
-/// Three numbers per node.
+/// Three numbers per node; of `forces` those in the plane are of both sides,
+/// which cancel across it.
 VectorX with_image(const VectorX& drawn, const NodeImages& at,
-                   const Mirror& mirror) {
+                   const Mirror& mirror, bool forces) {
   if (drawn.size() == 0) {
     return drawn;
   }
-  VectorX whole(3 * at.count);
+  VectorX whole = VectorX::Zero(3 * at.count);
   for (std::size_t n = 0; n < at.drawn.size(); ++n) {
-    const auto from = static_cast<Eigen::Index>(3 * n);
-    whole.segment<3>(3 * at.image[n]) = mirror.vector(drawn.segment<3>(from));
-    whole.segment<3>(3 * at.drawn[n]) = drawn.segment<3>(from);
+    const Vec3 here = drawn.segment<3>(static_cast<Eigen::Index>(3 * n));
+    whole.segment<3>(3 * at.drawn[n]) = here;
+    if (at.image[n] != at.drawn[n]) {
+      whole.segment<3>(3 * at.image[n]) = mirror.vector(here);
+    } else if (forces) {
+      whole.segment<3>(3 * at.image[n]) += mirror.vector(here);
+    }
   }
   return whole;
 }
@@ -259,14 +264,14 @@ void mirror_fields(const Mirror& mirror, forward::EvaluationFields& fields) {
   fields.boundary = with_image(fields.boundary, mirror);
   const NodeImages at = node_images(fields.mesh, mirror);
   const TetMesh whole = with_image(fields.mesh, at, mirror);
-  for (std::vector<VectorX>* all :
-       {&fields.solution.displacements, &fields.solution.reactions}) {
-    for (VectorX& of_case : *all) {
-      of_case = with_image(of_case, at, mirror);
-    }
+  for (VectorX& u : fields.solution.displacements) {
+    u = with_image(u, at, mirror, false);
+  }
+  for (VectorX& forces : fields.solution.reactions) {
+    forces = with_image(forces, at, mirror, true);
   }
   for (forward::ModeShape& mode : fields.modes) {
-    mode.shape = with_image(mode.shape, at, mirror);
+    mode.shape = with_image(mode.shape, at, mirror, false);
   }
   for (forward::PartStress& stress : fields.stresses) {
     stress.points = with_image(stress.points, mirror);

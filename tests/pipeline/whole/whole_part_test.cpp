@@ -163,5 +163,22 @@ TEST(WholePart, MovesAndIsStressedAsItsImages) {
   }
 }
 
+Vec3 sum_of(const VectorX& forces) {
+  Vec3 sum = Vec3::Zero();
+  for (Eigen::Index n = 0; n < forces.size(); n += 3) {
+    sum += forces.segment<3>(n);
+  }
+  return sum;
+}
+
+TEST(WholePart, IsHeldByTheForcesOfAllParts) {
+  const Vec3 drawn = sum_of(solved().drawn.solution.reactions[0]);
+  const Vec3 whole = sum_of(solved().whole.solution.reactions[0]);
+  EXPECT_GT(drawn.z(), 0.0);
+  EXPECT_NEAR(whole.z(), 4.0 * drawn.z(), kRounding * drawn.z());
+  EXPECT_NEAR(whole.x(), 0.0, kRounding * drawn.z());
+  EXPECT_NEAR(whole.y(), 0.0, kRounding * drawn.z());
+}
+
 }  // namespace
 }  // namespace meniscus::whole_part_test
