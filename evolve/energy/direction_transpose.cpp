@@ -1,5 +1,7 @@
 // The directions of a FilmSpace by the points that make them, backwards and
 // forwards.
+#include <algorithm>
+
 #include "core/error.h"
 #include "evolve/energy/facet_terms.h"
 #include "evolve/energy/film_space.h"
@@ -40,8 +42,8 @@ Vec3 unit_rate(const Vec3& v, const Vec3& rate) {
 
 [[noreturn]] void refuse_wall() {
   throw InvalidInput(
-      "a film that slides on curves, on bent walls or on several at once has "
-      "no exact gradient: hold its rim on a curve, or let it slide on a plane");
+      "a film that slides on curves or on bent walls has no exact gradient: "
+      "hold its rim on a curve, or let it slide on a plane");
 }
 
 }  // namespace
@@ -50,6 +52,17 @@ Vec3 line_axis(const Vec3& t) {
   Eigen::Index least = 0;
   t.cwiseAbs().minCoeff(&least);
   return Vec3::Unit(least);
+}
+
+/// Where two planes meet, the way along both is the same for all films.
+bool FilmSpace::runs_along_planes(int k, const Points& points) const {
+  const Wall& wall = walls_[k];
+  return wall.curve < 0 && wall.level_sets.size() == 2 &&
+         std::all_of(
+             wall.level_sets.begin(), wall.level_sets.end(), [&](int level) {
+               return jet_at(level_sets_[level].formula, points[walled_[k]])
+                   .hessian.isZero(0.0);
+             });
 }
 
 /// The way of a film's edge on a plane wall, as wall_directions() goes, before
@@ -100,6 +113,9 @@ void FilmSpace::transpose_directions(const Points& points,
   for (int v = 0; v < vertex_count(); ++v) {
     const int at = first_[v];
     if (rank(v) > 0 && !wall_of_.empty() && wall_of_[v] >= 0) {
+      if (runs_along_planes(wall_of_[v], points)) {
+        continue;
+      }
       const WallWay way = wall_way(wall_of_[v], points, normal2[v]);
       const Vec3 by_way = through_unit(way.way, by_directions[at]);
       const Vec3& n = way.normal;
@@ -164,6 +180,9 @@ Points FilmSpace::direction_rates(const Points& points,
   for (int v = 0; v < vertex_count(); ++v) {
     const int at = first_[v];
     if (rank(v) > 0 && !wall_of_.empty() && wall_of_[v] >= 0) {
+      if (runs_along_planes(wall_of_[v], points)) {
+        continue;
+      }
       const WallWay way = wall_way(wall_of_[v], points, normal2[v]);
       const Vec3& n = way.normal;
       const Edge& ends = line_ends(v);

@@ -49,8 +49,8 @@ class FilmSpace {
 
   /// directions() transposed: adds to `sum`, one per vertex, the gradient by
   /// the points of something whose gradient by each direction is given. Throws
-  /// InvalidInput for films that slide on curves, on several walls at once or
-  /// on walls that are no planes.
+  /// InvalidInput for films that slide on curves or on walls that are no
+  /// planes.
   void transpose_directions(const Points& points, const Points& by_directions,
                             Points& sum) const;
 
@@ -96,6 +96,7 @@ class FilmSpace {
     Vec3 way = Vec3::Zero();
     bool across = false;  // of the film's edge, not along the film's normal
   };
+  bool runs_along_planes(int k, const Points& points) const;
   WallWay wall_way(int k, const Points& points, const Vec3& normal2) const;
   static bool turns_across(const Vec3& along, const Vec3& across);
 

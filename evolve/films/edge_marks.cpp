@@ -178,6 +178,8 @@ PlacedVertex born_on(const FilmComplex& complex, const ComplexEdge& mark,
                   shape, made.place,
                   from_a ? a.vertex.t : (from_b ? b.vertex.t : 0.0));
     made.place = curves::point_at(shape, made.vertex.t);
+  } else if (mark.kind == VertexKind::OnBand) {
+    return born_on_band(complex, mark.curve, a, b);
   } else if (mark.kind == VertexKind::OnEdge) {
     const ExactEdge& edge = complex.solid_edges[mark.curve].edge();
     made.vertex.curve = mark.curve;

@@ -41,8 +41,8 @@ struct PlacedVertex {
 
 /// The vertex born in the middle of marked edge `mark` between a and b: on
 /// curves at the middle parameter (of an end that is not on the curve: at the
-/// nearest point), on edges of solids at the point next to the middle, on walls
-/// at the point of the level sets next to the middle.
+/// nearest point), on bands halfway, on edges of solids at the point next to
+/// the middle, on walls at the point of the level sets next to the middle.
 PlacedVertex born_on(const FilmComplex& complex, const ComplexEdge& mark,
                      const PlacedVertex& a, const PlacedVertex& b);
 

@@ -33,7 +33,8 @@ struct ComplexVertex {
   int curve = -1;        // OnCurve, Slides: index into curves; OnBand: bands;
                          // OnEdge, OnFace: solid_edges, solid_faces
   double t = 0.0;        // of the curve; OnBand: of the band's outer curve
-  int constraints = -1;  // Free: index into constraint_sets; -1: none
+  int constraints = -1;  // Free, and InCap on planes of symmetry: index into
+                         // constraint_sets; -1: none
   bool held = true;      // by them now; false: a one-sided wall was left
   double share = 0.0;    // OnBand: of the way to the inner curve; OnFace: the
                          // surface's second parameter, t the first
@@ -46,7 +47,7 @@ struct ComplexEdge {
   int a = -1;
   int b = -1;
   VertexKind kind = VertexKind::Free;  // of the vertices born on it
-  int curve = -1;                      // OnCurve, Slides, OnEdge
+  int curve = -1;                      // OnCurve, Slides, OnEdge; OnBand: bands
   int constraints = -1;                // index into constraint_sets
   bool refine = true;                  // false: stays one edge
   int integrals = -1;                  // index into integral_sets; -1: none

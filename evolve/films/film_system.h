@@ -47,6 +47,10 @@ struct PlaneWall {
   /// Energy per wetted area [force/length]: -T cos a for films of tension T
   /// that meet the wall at the contact angle a, measured in the body (Young).
   double tension = 0.0;
+  /// A plane of symmetry that cuts curves: what lies beyond it, on the side
+  /// that `normal` points to, is left out of the start, and films, rings and
+  /// flat disks end there. Its cap need not name a curve then. Tension 0.
+  bool cuts = false;
 };
 
 /// A solid from a CAD program whose faces are caps (CapSpec::solid).
@@ -95,7 +99,10 @@ struct CapSpec {
     if (start || solid >= 0) {
       return rims;
     }
-    std::vector<std::string> all = {curve};
+    std::vector<std::string> all;
+    if (!curve.empty()) {  // planes that cut may have none
+      all.push_back(curve);
+    }
     if (!inner.empty()) {
       all.push_back(inner);
     }

@@ -222,6 +222,14 @@ RuledBand match_band(const std::vector<curves::Curve>& curves, int outer,
   return band;
 }
 
+void make_partners(RuledBand& band, double outer_t, double inner_t) {
+  const auto share = [](const LengthShares& table, double t) {
+    return interpolated(table.t, table.share, t);
+  };
+  band.shift = wrapped(share(band.inner_shares, inner_t) -
+                       band.turn * share(band.outer_shares, outer_t));
+}
+
 RuledBand match_patch(const std::vector<curves::Curve>& curves, int curve) {
   const std::size_t sides = sides_of(curves[curve].shape).size();
   if (sides != 4) {

@@ -42,6 +42,9 @@ struct RuledBand {
 RuledBand match_band(const std::vector<curves::Curve>& curves, int outer,
                      int inner);
 
+/// Shifts the band so that the points at these parameters are partners.
+void make_partners(RuledBand& band, double outer_t, double inner_t);
+
 /// Between the first and the third of a curve's four sides, equal parameters
 /// joined. Throws InvalidInput, naming it, for a curve of other sides.
 RuledBand match_patch(const std::vector<curves::Curve>& curves, int curve);

@@ -9,41 +9,13 @@ namespace meniscus::frozen {
 
 namespace {
 
-/// Vertices of a kind that facets link to a rim; others, of parts that float,
-/// stay where they are.
-std::vector<char> carried_vertices(const films::FilmComplex& reference,
-                                   films::VertexKind kind) {
-  const bool film = kind == films::VertexKind::Free;
-  UnionFind parts(reference.vertices.size());
-  const SurfaceMesh& mesh = reference.mesh;
-  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
-    if (reference.surfaces[mesh.facet_label[f]].liquid == film) {
-      const Triangle& t = mesh.facets[f];
-      parts.join(t[0], t[1]);
-      parts.join(t[0], t[2]);
-    }
-  }
-  std::vector<char> held(parts.size(), 0);
-  for (std::size_t v = 0; v < held.size(); ++v) {
-    if (reference.vertices[v].kind != kind) {
-      held[parts.root(static_cast<int>(v))] = 1;
-    }
-  }
-  std::vector<char> result(held.size(), 0);
-  for (std::size_t v = 0; v < held.size(); ++v) {
-    result[v] = reference.vertices[v].kind == kind &&
-                        held[parts.root(static_cast<int>(v))] != 0
-                    ? 1
-                    : 0;
-  }
-  return result;
-}
-
 /// Unit normals of the walls that a vertex slides on.
 std::vector<Vec3> wall_normals_at(const films::FilmComplex& reference, int v) {
   std::vector<Vec3> result;
   const films::ComplexVertex& vertex = reference.vertices[v];
-  if (vertex.kind == films::VertexKind::Free && vertex.constraints >= 0) {
+  if ((vertex.kind == films::VertexKind::Free ||
+       vertex.kind == films::VertexKind::InCap) &&
+      vertex.constraints >= 0) {
     for (const int wall : reference.constraint_sets[vertex.constraints]) {
       result.push_back(energy::jet_at(reference.level_sets[wall].formula,
                                       reference.mesh.points[v])
@@ -70,6 +42,51 @@ std::vector<Vec3> ways_left(const std::vector<Vec3>& normals) {
 }
 
 }  // namespace
+
+Carry::Part Carry::part_of(const films::ComplexSurface& surface) {
+  return surface.liquid ? Part::Films
+                        : (surface.wetted ? Part::Wetted : Part::Caps);
+}
+
+/// Vertices of a part that facets link to its rim; others, of parts that float,
+/// stay where they are. What caps and wetted faces have in common is of caps.
+std::vector<char> Carry::carried_vertices(const films::FilmComplex& reference,
+                                          Part part) {
+  const films::VertexKind kind =
+      part == Part::Films ? films::VertexKind::Free : films::VertexKind::InCap;
+  UnionFind parts(reference.vertices.size());
+  const SurfaceMesh& mesh = reference.mesh;
+  std::vector<char> own(parts.size(), 0);
+  std::vector<char> of_caps(parts.size(), 0);
+  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+    const Part here = part_of(reference.surfaces[mesh.facet_label[f]]);
+    const Triangle& t = mesh.facets[f];
+    for (const int v : t) {
+      own[v] = own[v] != 0 || here == part ? 1 : 0;
+      of_caps[v] = of_caps[v] != 0 || here == Part::Caps ? 1 : 0;
+    }
+    if (here == part) {
+      parts.join(t[0], t[1]);
+      parts.join(t[0], t[2]);
+    }
+  }
+  std::vector<char> held(parts.size(), 0);
+  std::vector<char> result(parts.size(), 0);
+  for (std::size_t v = 0; v < held.size(); ++v) {
+    const bool elsewhere = part == Part::Wetted && of_caps[v] != 0;
+    const bool moves = reference.vertices[v].kind == kind && !elsewhere;
+    result[v] = moves && (part == Part::Films || own[v] != 0) ? 1 : 0;
+    if (!moves) {
+      held[parts.root(static_cast<int>(v))] = 1;
+    }
+  }
+  for (std::size_t v = 0; v < held.size(); ++v) {
+    if (held[parts.root(static_cast<int>(v))] == 0) {
+      result[v] = 0;
+    }
+  }
+  return result;
+}
 
 /// With the Laplacian L of one coordinate and the basis B of the ways that are
 /// left, the moves are B y, (B' L B) y = B' (outer moves).
@@ -130,12 +147,11 @@ Eigen::MatrixXd Carry::Extension::solve(const Eigen::MatrixXd& right) const {
       .transpose();
 }
 
-Carry::Extension Carry::extend(const films::FilmComplex& reference,
-                               films::VertexKind kind,
+Carry::Extension Carry::extend(const films::FilmComplex& reference, Part part,
                                const std::vector<int>& order) {
   Extension extension;
   std::vector<int> unknown_of(reference.vertices.size(), -1);
-  const std::vector<char> carried = carried_vertices(reference, kind);
+  const std::vector<char> carried = carried_vertices(reference, part);
   for (std::size_t v = 0; v < reference.vertices.size(); ++v) {
     if (carried[v] != 0) {
       unknown_of[v] = static_cast<int>(extension.vertices.size());
@@ -145,10 +161,10 @@ Carry::Extension Carry::extend(const films::FilmComplex& reference,
   if (extension.vertices.empty()) {
     return extension;
   }
-  const bool film = kind == films::VertexKind::Free;
+  const bool film = part == Part::Films;
   std::vector<double> weight;
   for (const int label : reference.mesh.facet_label) {
-    weight.push_back(reference.surfaces[label].liquid == film ? 1.0 : 0.0);
+    weight.push_back(part_of(reference.surfaces[label]) == part ? 1.0 : 0.0);
   }
   const auto count = static_cast<int>(extension.vertices.size());
   energy::LaplaceSystem laplace = energy::cotan_laplacian(
@@ -156,11 +172,9 @@ Carry::Extension Carry::extend(const films::FilmComplex& reference,
       film ? energy::CotanWeights::Clamped : energy::CotanWeights::Exact);
   extension.outer.swap(laplace.outer);
   laplace.inner.makeCompressed();
-  if (film) {
-    bind_to_walls(reference, laplace.inner, extension);
-    if (extension.factor) {
-      return extension;
-    }
+  bind_to_walls(reference, laplace.inner, extension);
+  if (extension.factor) {
+    return extension;
   }
   // Films with triple lines have more unknowns than vertices: no order then.
   const bool fits = order.size() == extension.vertices.size();
@@ -180,8 +194,9 @@ Carry::Carry(const films::FilmComplex& reference,
     : reference_(reference.mesh.points),
       stands_(reference.curves.size()),
       stands_on_curves_(reference.vertices.size(), 0),
-      films_(extend(reference, films::VertexKind::Free, film_order)),
-      caps_(extend(reference, films::VertexKind::InCap, {})) {
+      films_(extend(reference, Part::Films, film_order)),
+      caps_(extend(reference, Part::Caps, {})),
+      wetted_(extend(reference, Part::Wetted, {})) {
   for (std::size_t v = 0; v < reference.vertices.size(); ++v) {
     const films::ComplexVertex& vertex = reference.vertices[v];
     const auto id = static_cast<int>(v);
@@ -278,15 +293,10 @@ void Carry::add_transposed(const Extension& extension, const Points& by_points,
 
 Points Carry::transpose(const Points& by_points) const {
   Points result = by_points;
-  if (slides_) {
-    // Caps follow films that slide.
-    add_transposed(caps_, by_points, result);
-    const Points by_films = result;
-    add_transposed(films_, by_films, result);
-  } else {
-    add_transposed(films_, by_points, result);
-    add_transposed(caps_, by_points, result);
-  }
+  add_transposed(wetted_, by_points, result);
+  const Points by_rims = result;
+  add_transposed(films_, by_rims, result);
+  add_transposed(caps_, by_rims, result);
   for (std::size_t v = 0; v < reference_.size(); ++v) {
     if (stands_on_curves_[v] == 0) {
       result[v].setZero();
@@ -299,6 +309,7 @@ Points Carry::rates(const Points& rim_rates) const {
   Points result = rim_rates;
   apply(films_, result);
   apply(caps_, result);
+  apply(wetted_, result);
   return result;
 }
 
@@ -311,6 +322,7 @@ Points Carry::at(const Points& rim_moves, double fraction) const {
   }
   apply(films_, moves);
   apply(caps_, moves);
+  apply(wetted_, moves);
   Points result = reference_;
   for (std::size_t v = 0; v < reference_.size(); ++v) {
     result[v] += moves[v];
@@ -320,10 +332,10 @@ Points Carry::at(const Points& rim_moves, double fraction) const {
 
 void Carry::follow_rates(Points& rates) const {
   if (slides_) {
-    for (const int v : caps_.vertices) {
+    for (const int v : wetted_.vertices) {
       rates[v].setZero();
     }
-    apply(caps_, rates);
+    apply(wetted_, rates);
   }
 }
 
@@ -334,7 +346,7 @@ void Carry::follow(Points& points) const {
       moves[v] = points[v] - reference_[v];
     }
     follow_rates(moves);
-    for (const int v : caps_.vertices) {
+    for (const int v : wetted_.vertices) {
       points[v] = reference_[v] + moves[v];
     }
   }
@@ -343,8 +355,8 @@ void Carry::follow(Points& points) const {
 void Carry::fold_caps(Points& by_points) const {
   if (slides_ && !by_points.empty()) {
     const Points by_caps = by_points;
-    add_transposed(caps_, by_caps, by_points);
-    for (const int v : caps_.vertices) {
+    add_transposed(wetted_, by_caps, by_points);
+    for (const int v : wetted_.vertices) {
       by_points[v].setZero();
     }
   }

@@ -15,8 +15,8 @@ namespace meniscus::frozen {
 /// rims do); on a flat cap it is harmonic with exact cotangents, which
 /// reproduces linear maps, so that the cap stays flat where its rim does.
 /// Vertices on plane walls move within them: there C is harmonic in the
-/// directions that walls leave. A face that films wet follows its rim to where
-/// that has slid, by follow().
+/// directions that walls leave. A face that films wet follows its rim, films'
+/// and caps', to where that has slid, by follow().
 /// Immutable after construction; at() may run in several threads.
 class Carry {
  public:
@@ -43,12 +43,12 @@ class Carry {
   /// when all moves are zero.
   Points at(const Points& rim_moves, double fraction) const;
 
-  /// Puts the vertices inside caps where their rims, at `points`, have them:
-  /// X of caps, but from rims that have slid on walls.
+  /// Puts the vertices inside faces that films wet where their rims, at
+  /// `points`, have them: X, but from rims that have slid on walls.
   void follow(Points& points) const;
 
   /// follow() for rates of all vertices, and transposed: a gradient by the
-  /// vertices that caps follow, zero inside caps.
+  /// vertices that wetted faces follow, zero inside these.
   void follow_rates(Points& rates) const;
   void fold_caps(Points& by_points) const;
 
@@ -72,8 +72,11 @@ class Carry {
   };
   void add_stands_on_frame(const films::FilmComplex& reference, int vertex,
                            int frame);
-  static Extension extend(const films::FilmComplex& reference,
-                          films::VertexKind kind,
+  enum class Part { Films, Caps, Wetted };
+  static Part part_of(const films::ComplexSurface& surface);
+  static std::vector<char> carried_vertices(const films::FilmComplex& reference,
+                                            Part part);
+  static Extension extend(const films::FilmComplex& reference, Part part,
                           const std::vector<int>& order);
   static void bind_to_walls(const films::FilmComplex& reference,
                             const SparseMatrix& inner, Extension& extension);
@@ -88,6 +91,7 @@ class Carry {
   bool slides_ = false;                 // on walls, some of it
   Extension films_;
   Extension caps_;
+  Extension wetted_;  // after both
 };
 
 }  // namespace meniscus::frozen

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "evolve/curves/curve_cut.h"
 #include "evolve/energy/fields.h"
 #include "evolve/energy/tension_field.h"
 #include "evolve/films/body_sides.h"
@@ -20,6 +21,7 @@
 #include "evolve/start/branch_facets.h"
 #include "evolve/start/cap_faces.h"
 #include "evolve/start/close_rims.h"
+#include "evolve/start/cut_start.h"
 #include "evolve/start/disk_fill.h"
 #include "evolve/start/facet_start.h"
 #include "evolve/start/fill_patch.h"
@@ -78,18 +80,12 @@ class StartBuilder {
     }
     const std::vector<RaisedDisk> raised = raise_disks(system_, result_);
     refuse_twins();
-    for (const films::BodySpec& body : system_.bodies) {
-      result_.bodies.push_back(films::make_body(body, result_.mesh));
-    }
-    for (const films::CapSpec& cap : system_.caps) {
-      films::require_body(system_, cap.name);
-    }
-    films::orient_bodies(result_);
-    if (turn_shared_disks(raised, result_)) {
-      films::orient_bodies(result_);
-    }
-    films::refuse_overlaps(result_);
+    add_bodies(raised);
     add_walls();
+    cut_start(system_, edge_, result_);
+    if (has_cuts(system_)) {
+      close_wetted_faces(result_, edge_);
+    }
     add_fields();
     const std::vector<double> tensions =
         energy::tensions_at(result_, result_.mesh.points);
@@ -219,7 +215,10 @@ class StartBuilder {
 
   std::vector<double> sampled(const curves::Curve& curve) const {
     try {
-      return curves::sample_parameters(curve.shape, curve.fineness * edge_);
+      const std::vector<double> t =
+          curves::sample_parameters(curve.shape, curve.fineness * edge_);
+      const std::vector<double> cuts = cuts_of(system_, curve);
+      return cuts.empty() ? t : curves::with_parameters(curve.shape, t, cuts);
     } catch (const InvalidInput& error) {
       throw InvalidInput(
           fmt::format("curve '{}': {}", curve.name, error.what()));
@@ -410,6 +409,7 @@ class StartBuilder {
     result_.surfaces[label].band = id;
     result_.bands.push_back(
         films::match_band(result_.curves, rims[0].curve, rims[1].curve));
+    match_cuts(system_, result_.surfaces[label].name, result_.bands.back());
     const films::RuledBand& band = result_.bands.back();
     std::vector<int> ids;
     std::vector<BandRim> sides;
@@ -467,6 +467,42 @@ class StartBuilder {
   }
 
   void add_branch(const films::FilmSpec& film, int label);
+
+  /// Faces that planes will cut, and that have no curve of their own, are not
+  /// needed to close the whole.
+  void add_bodies(const std::vector<RaisedDisk>& raised) {
+    std::map<std::string, int> later;  // by name: the label
+    for (const films::CapSpec& cap : system_.caps) {
+      if (cap.wall && cap.wall->cuts && cap.curves().empty()) {
+        later[cap.name] = result_.mesh.label_of(cap.name);
+      }
+    }
+    std::vector<std::vector<int>> faces;
+    for (films::BodySpec body : system_.bodies) {
+      std::vector<int>& of_body = faces.emplace_back();
+      std::erase_if(body.enclosed_by, [&](const std::string& name) {
+        const auto at = later.find(name);
+        if (at != later.end()) {
+          of_body.push_back(at->second);
+        }
+        return at != later.end();
+      });
+      result_.bodies.push_back(films::make_body(body, result_.mesh));
+    }
+    for (const films::CapSpec& cap : system_.caps) {
+      films::require_body(system_, cap.name);
+    }
+    films::orient_bodies(result_);
+    if (turn_shared_disks(raised, result_)) {
+      films::orient_bodies(result_);
+    }
+    films::refuse_overlaps(result_);
+    for (std::size_t b = 0; b < faces.size(); ++b) {
+      for (const int label : faces[b]) {
+        result_.bodies[b].sides.push_back({label, 1});
+      }
+    }
+  }
 
   void add_walls() {
     for (std::size_t k = 0; k < system_.caps.size(); ++k) {

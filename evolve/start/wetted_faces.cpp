@@ -10,7 +10,9 @@
 
 #include "core/error.h"
 #include "core/geometry/edge_key.h"
-#include "evolve/start/cap_faces.h"
+#include "core/math/dense.h"
+#include "evolve/energy/film_space.h"
+#include "evolve/start/face_loops.h"
 
 namespace meniscus::start {
 
@@ -22,13 +24,18 @@ Expression over_place(const std::string& text) {
   return Expression::parse(text, {"x", "y", "z"});
 }
 
-/// factor (m x r), whose integral along a loop of a plane across m is twice the
-/// factor x the area within.
-films::VectorField area_field(const Vec3& m, double factor) {
+/// factor (m x (r - from)), whose integral along a loop of a plane across m is
+/// twice the factor x the area within.
+films::VectorField area_field(const Vec3& m, const Vec3& from, double factor) {
   const Vec3 v = factor * m;
-  return {over_place(fmt::format("({:.17g})*z-({:.17g})*y", v.y(), v.z())),
-          over_place(fmt::format("({:.17g})*x-({:.17g})*z", v.z(), v.x())),
-          over_place(fmt::format("({:.17g})*y-({:.17g})*x", v.x(), v.y()))};
+  const Vec3 rest = -v.cross(from);
+  const auto part = [&](const char* text, double a, double b, double c) {
+    const std::string moved = c != 0.0 ? fmt::format("+({:.17g})", c) : "";
+    return over_place(fmt::format(fmt::runtime(text), a, b) + moved);
+  };
+  return {part("({:.17g})*z-({:.17g})*y", v.y(), v.z(), rest.x()),
+          part("({:.17g})*x-({:.17g})*z", v.z(), v.x(), rest.y()),
+          part("({:.17g})*y-({:.17g})*x", v.x(), v.y(), rest.z())};
 }
 
 Vec3 unit_normal(const films::CapSpec& cap) {
@@ -60,26 +67,6 @@ void require_on_wall(const films::CapSpec& cap, const std::string& curve,
     }
     points[v] -= off * n;
   }
-}
-
-/// Of each edge of the surface's facets the way that one of them runs, where
-/// only one has it.
-std::set<Edge> open_runs(const SurfaceMesh& mesh, int label) {
-  std::set<Edge> runs;
-  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
-    if (mesh.facet_label[f] != label) {
-      continue;
-    }
-    const Triangle& t = mesh.facets[f];
-    for (int k = 0; k < 3; ++k) {
-      const int a = t[k];
-      const int b = t[(k + 1) % 3];
-      if (runs.erase(Edge{b, a}) == 0) {
-        runs.insert(Edge{a, b});
-      }
-    }
-  }
-  return runs;
 }
 
 Vec3 area_vector(const SurfaceMesh& mesh, int label) {
@@ -114,27 +101,126 @@ void require_one_film(const films::FilmSystem& system,
   }
 }
 
-/// The rims of one wetted surface as closed loops, in the direction of its
-/// facets, from their marked edges.
-std::vector<std::vector<int>> loops_of(const films::FilmComplex& complex,
-                                       int set) {
+/// A wetted face as a plane: through a point of its level set.
+FacePlane plane_of(const films::FilmComplex& complex,
+                   const films::ComplexSurface& face) {
+  const films::LevelSet& level =
+      complex.level_sets[complex.constraint_sets[face.constraints].front()];
+  const double value = energy::value_at(level.formula, Vec3::Zero());
+  const Vec3 n = energy::jet_at(level.formula, Vec3::Zero()).gradient;
+  return {-value / n.squaredNorm() * n, *face.wetted, face.constraints};
+}
+
+/// Marked edges by their ends, of those that lie in a constraint set's walls.
+std::set<Edge> edges_within(const films::FilmComplex& complex, int set) {
+  const int level = complex.constraint_sets[set].front();
+  std::set<Edge> result;
+  for (const films::ComplexEdge& mark : complex.edges) {
+    if (mark.constraints < 0) {
+      continue;
+    }
+    const std::vector<int>& levels = complex.constraint_sets[mark.constraints];
+    if (std::find(levels.begin(), levels.end(), level) != levels.end()) {
+      result.insert(edge_key(mark.a, mark.b));
+    }
+  }
+  return result;
+}
+
+/// Where a wetted face's boundary runs, in the direction of its facets: along
+/// marked edges against its body's other facets.
+std::map<int, int> boundary_of(const films::FilmComplex& complex, int surface) {
   std::map<int, int> next;
-  for (const films::ComplexEdge& edge : complex.edges) {
-    if (edge.constraints == set) {
-      next[edge.a] = edge.b;
+  const auto body =
+      std::find_if(complex.bodies.begin(), complex.bodies.end(),
+                   [&](const films::ComplexBody& b) {
+                     return std::any_of(b.sides.begin(), b.sides.end(),
+                                        [&](const films::BodySide& side) {
+                                          return side.surface == surface;
+                                        });
+                   });
+  if (body == complex.bodies.end()) {
+    return next;
+  }
+  std::vector<int> sign(complex.surfaces.size(), 0);
+  for (const films::BodySide& side : body->sides) {
+    sign[side.surface] = complex.surfaces[side.surface].wetted ? 0 : side.sign;
+    if (side.surface == surface && side.sign < 0) {
+      throw InvalidInput(fmt::format("the face '{}' turns into its body",
+                                     complex.surfaces[surface].name));
     }
   }
-  std::vector<std::vector<int>> loops;
-  while (!next.empty()) {
-    std::vector<int>& loop = loops.emplace_back();
-    for (auto at = next.begin(); at != next.end();) {
-      loop.push_back(at->first);
-      const int to = at->second;
-      next.erase(at);
-      at = next.find(to);
+  const std::set<Edge> edges =
+      edges_within(complex, complex.surfaces[surface].constraints);
+  std::map<Edge, int> runs;  // out of the body, those both ways taken away
+  for (std::size_t f = 0; f < complex.mesh.facets.size(); ++f) {
+    const Triangle& t = complex.mesh.facets[f];
+    const int side = sign[complex.mesh.facet_label[f]];
+    for (int k = 0; k < 3 && side != 0; ++k) {
+      const int a = t[k];
+      const int b = t[(k + 1) % 3];
+      if (edges.count(edge_key(a, b)) > 0) {
+        runs[edge_key(a, b)] += (a < b) == (side > 0) ? 1 : -1;
+      }
     }
   }
-  return loops;
+  for (const auto& [run, count] : runs) {
+    if (count != 0) {
+      next[run[count > 0 ? 1 : 0]] = run[count > 0 ? 0 : 1];
+    }
+  }
+  return next;
+}
+
+/// Where line integrals begin: on the planes of all faces that meet this one
+/// along a seam, which then add nothing to them.
+Vec3 middle_of(const films::FilmComplex& complex,
+               const films::ComplexSurface& face) {
+  const int own = complex.constraint_sets[face.constraints].front();
+  std::set<int> others;
+  for (const std::vector<int>& set : complex.constraint_sets) {
+    if (std::find(set.begin(), set.end(), own) != set.end()) {
+      others.insert(set.begin(), set.end());
+    }
+  }
+  others.erase(own);
+  if (others.empty()) {
+    return Vec3::Zero();
+  }
+  Eigen::MatrixX3d normals(static_cast<Eigen::Index>(others.size()), 3);
+  VectorX offs(normals.rows());
+  Eigen::Index row = 0;
+  for (const int level : others) {
+    const Expression& formula = complex.level_sets[level].formula;
+    normals.row(row) = energy::jet_at(formula, Vec3::Zero()).gradient;
+    offs[row++] = -energy::value_at(formula, Vec3::Zero());
+  }
+  const Vec3 middle = least_norm(normals, offs);
+  const double off = (normals * middle - offs).cwiseAbs().maxCoeff();
+  if (!(off <= kInPlane * (1.0 + offs.cwiseAbs().maxCoeff()))) {
+    throw InvalidInput(fmt::format(
+        "'{}' meets walls that have no point in common; draw the whole",
+        face.name));
+  }
+  return middle;
+}
+
+/// The level set of a cap's wall as a constraint set: planes that cut have one
+/// for all the faces in them.
+int wall_set(const films::CapSpec& cap, films::FilmComplex& complex) {
+  const Expression formula = plane_formula(*cap.wall);
+  for (std::size_t s = 0; cap.wall->cuts && s < complex.constraint_sets.size();
+       ++s) {
+    const std::vector<int>& set = complex.constraint_sets[s];
+    if (set.size() == 1 &&
+        complex.level_sets[set[0]].formula.text() == formula.text()) {
+      return static_cast<int>(s);
+    }
+  }
+  complex.constraint_sets.push_back(
+      {static_cast<int>(complex.level_sets.size())});
+  complex.level_sets.push_back({cap.name, formula});
+  return static_cast<int>(complex.constraint_sets.size()) - 1;
 }
 
 }  // namespace
@@ -157,10 +243,7 @@ void slide_on_wall(const films::FilmSystem& system, const films::CapSpec& cap,
   if (area_vector(complex.mesh, label).dot(n) < 0.0) {
     n = -n;
   }
-  const auto set = static_cast<int>(complex.constraint_sets.size());
-  complex.constraint_sets.push_back(
-      {static_cast<int>(complex.level_sets.size())});
-  complex.level_sets.push_back({cap.name, plane_formula(*cap.wall)});
+  const int set = wall_set(cap, complex);
   films::ComplexSurface& face = complex.surfaces[label];
   face.wetted = n;
   face.tension = cap.wall->tension;
@@ -195,36 +278,14 @@ films::FilmComplex open_wetted_faces(const films::FilmComplex& complex) {
   SurfaceMesh& mesh = result.mesh;
   mesh.facets.clear();
   mesh.facet_label.clear();
-  std::vector<int> number(complex.vertices.size(), -1);
   for (std::size_t f = 0; f < complex.mesh.facets.size(); ++f) {
     const int label = complex.mesh.facet_label[f];
     if (!complex.surfaces[label].wetted) {
       mesh.facets.push_back(complex.mesh.facets[f]);
       mesh.facet_label.push_back(label);
-      for (const int v : mesh.facets.back()) {
-        number[v] = 0;
-      }
     }
   }
-  // Vertices that other facets have keep their order.
-  mesh.points.clear();
-  result.vertices.clear();
-  for (std::size_t v = 0; v < number.size(); ++v) {
-    if (number[v] == 0) {
-      number[v] = static_cast<int>(mesh.points.size());
-      mesh.points.push_back(complex.mesh.points[v]);
-      result.vertices.push_back(complex.vertices[v]);
-    }
-  }
-  for (Triangle& t : mesh.facets) {
-    for (int& v : t) {
-      v = number[v];
-    }
-  }
-  for (films::ComplexEdge& edge : result.edges) {
-    edge.a = number[edge.a];
-    edge.b = number[edge.b];
-  }
+  drop_unused(result);
   // The face's area A is half the integral of m x r along its rim, its cone
   // (m . r) A / 3. Films run along the rim the other way.
   for (const films::ComplexSurface& face : complex.surfaces) {
@@ -240,50 +301,36 @@ films::FilmComplex open_wetted_faces(const films::FilmComplex& complex) {
         off = face.wetted->dot(mesh.points[edge.a]);
       }
     }
-    result.integrals.push_back({face.name + " energy",
-                                films::LineIntegral::Role::Energy,
-                                area_field(*face.wetted, 0.5 * face.tension)});
+    const Vec3 from = middle_of(complex, face);
+    result.integrals.push_back(
+        {face.name + " energy", films::LineIntegral::Role::Energy,
+         area_field(*face.wetted, from, 0.5 * face.tension)});
     result.integrals.push_back({face.name + " content",
                                 films::LineIntegral::Role::Content,
-                                area_field(*face.wetted, -off / 6.0)});
+                                area_field(*face.wetted, from, -off / 6.0)});
     result.integral_sets.push_back({first, first + 1});
   }
   return result;
 }
 
 void close_wetted_faces(films::FilmComplex& complex, double edge) {
-  SurfaceMesh& mesh = complex.mesh;
+  std::vector<FacePlane> planes;
+  for (const films::ComplexSurface& face : complex.surfaces) {
+    if (face.wetted &&
+        std::none_of(planes.begin(), planes.end(), [&](const FacePlane& p) {
+          return p.set == face.constraints;
+        })) {
+      planes.push_back(plane_of(complex, face));
+    }
+  }
+  FaceSeams seams(complex, planes, edge);
   for (std::size_t s = 0; s < complex.surfaces.size(); ++s) {
     const films::ComplexSurface& face = complex.surfaces[s];
-    if (!face.wetted) {
-      continue;
-    }
-    const std::vector<std::vector<int>> loops =
-        loops_of(complex, face.constraints);
-    std::vector<Points> places;
-    for (const std::vector<int>& loop : loops) {
-      Points& of_loop = places.emplace_back();
-      for (const int v : loop) {
-        of_loop.push_back(mesh.points[v]);
-      }
-    }
-    for (const std::vector<int>& part : faces_with_holes(places)) {
-      std::vector<int> ids;
-      std::vector<Points> bounds;
-      for (const int k : part) {
-        bounds.push_back(places[k]);
-        ids.insert(ids.end(), loops[k].begin(), loops[k].end());
-      }
-      const SurfaceMesh filling = fill_face(bounds, edge, false, face.name);
-      for (std::size_t i = ids.size(); i < filling.points.size(); ++i) {
-        ids.push_back(static_cast<int>(mesh.points.size()));
-        mesh.points.push_back(filling.points[i]);
-        complex.vertices.push_back({films::VertexKind::InCap});
-      }
-      for (const Triangle& t : filling.facets) {
-        mesh.facets.push_back({ids[t[0]], ids[t[1]], ids[t[2]]});
-        mesh.facet_label.push_back(static_cast<int>(s));
-      }
+    if (face.wetted) {
+      const auto label = static_cast<int>(s);
+      fill_loops(seams.loops(plane_of(complex, face),
+                             boundary_of(complex, label), face.name),
+                 edge, false, label, complex);
     }
   }
   for (films::ComplexEdge& mark : complex.edges) {

@@ -205,6 +205,42 @@ films::FilmSystem sliding(double p) {
   return system;
 }
 
+/// A quarter of a tube between a disk and a ring around a bore, which two
+/// planes cut.
+films::FilmSystem quarter(double p) {
+  films::FilmSystem system;
+  system.curves = {
+      {"low", curves::Circle{Vec3(0, 0, 0.1 * p), Vec3::UnitZ(), 1.0}},
+      {"high", curves::Circle{Vec3(0, 0, 0.9), Vec3::UnitZ(), 1.0 + 0.15 * p}},
+      {"in_high",
+       curves::Circle{Vec3(0, 0, 0.9), Vec3::UnitZ(), 0.5 + 0.05 * p}},
+      {"bottom", curves::Circle{Vec3(0, 0, 0.5), Vec3::UnitZ(), 0.4}}};
+  system.films = {
+      {"skin", films::FilmKind::Loft, {"low", "high"}, 1.0 + 0.3 * p, {}}};
+  system.caps = {{"foot", "low"},
+                 {"head", "high", "in_high"},
+                 {"bore", "in_high", "bottom"},
+                 {"end", "bottom"},
+                 {"cut_x", ""},
+                 {"cut_y", ""}};
+  system.caps[4].wall = films::PlaneWall{.normal = Vec3(3, 1, 0), .cuts = true};
+  system.caps[5].wall =
+      films::PlaneWall{.normal = Vec3(-1, 3, 0), .cuts = true};
+  system.bodies = {{"part",
+                    {"skin", "foot", "head", "bore", "end", "cut_x", "cut_y"},
+                    0.72 + 0.1 * p,
+                    {}}};
+  return system;
+}
+
+TEST(FilmGradient, OfAQuarterThatPlanesCut) {
+  for (const int refinements : {0, 1}) {
+    const frozen::FilmModel model = frozen::FilmModel::freeze(
+        quarter(0), {.edge = 0.25, .refinements = refinements});
+    expect_exact(model, quarter, 0.2, 1e-2);
+  }
+}
+
 TEST(FilmGradient, OfAFilmThatSlidesOnAPlane) {
   for (const int refinements : {0, 1}) {
     const frozen::FilmModel model = frozen::FilmModel::freeze(
