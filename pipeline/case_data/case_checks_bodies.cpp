@@ -131,7 +131,8 @@ std::string parting_advice(const SurfacesAtCurves& at_curve) {
 /// Two flat caps across one curve lie on each other.
 void check_caps(const Case& input, CaseProblems& problems) {
   const auto is_flat = [](const CapEntry& cap) {
-    return !cap.is_file && cap.spec.inner.empty() && cap.spec.more.empty();
+    return !cap.is_file && cap.spec.inner.empty() && cap.spec.more.empty() &&
+           !cap.spec.curve.empty();
   };
   std::map<std::string, std::string> across;
   for (const CapEntry& cap : input.caps) {
@@ -206,6 +207,11 @@ bool names_are_known(const Case& input, const BodyEntry& body) {
   for (const FilmEntry& film : input.films) {
     known = known && (film.spec.kind == films::FilmKind::Facets ||
                       !film.spec.curves.empty());
+  }
+  for (const CapEntry& cap : input.caps) {
+    const bool named = cap.is_file || !cap.spec.curve.empty() ||
+                       (cap.wetted && cap.wetted->cuts);
+    known = known && (named || !is_among(body.enclosed_by, cap.spec.name));
   }
   const auto is_curve = [&](const std::string& name) {
     return std::any_of(input.curves.begin(), input.curves.end(),

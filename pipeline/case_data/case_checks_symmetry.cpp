@@ -82,7 +82,9 @@ const curves::Curve* curve_named(const std::vector<curves::Curve>& curves,
   return at == curves.end() ? nullptr : &*at;
 }
 
+/// `cut`: by plane, the curves that it cuts at the initial design.
 void check_curve(const Case& input, const std::string& name, bool of_film,
+                 const std::vector<std::set<std::string>>& cut,
                  const films::FilmSystem& system, const CaseValues& values) {
   const curves::Curve* curve = curve_named(system.curves, name);
   const auto entry =
@@ -94,11 +96,14 @@ void check_curve(const Case& input, const std::string& name, bool of_film,
   for (std::size_t p = 0; p < input.symmetry.size(); ++p) {
     const Reach reach = reach_of(input.symmetry[p], *curve);
     const Vec3& at = reach.farthest;
+    if (cut[p].contains(name)) {
+      continue;  // check_cut_curves()
+    }
     if (reach.most > reach.rounding) {
       values.problems().push_back(fmt::format(
           "{}: curve '{}' is {:.4g} beyond plane {} of symmetry at ({:.4g}, "
           "{:.4g}, {:.4g}); draw the side that its normal points away from, "
-          "and curves whole: beside the plane or in it, not across",
+          "and what crosses it so that it does at every design",
           place(input, entry->line), name, reach.most, p + 1, at.x(), at.y(),
           at.z()));
       return;
@@ -125,8 +130,13 @@ void check_curves_of(const Case& input, const films::FilmSystem& system,
     all.insert(curves.begin(), curves.end());
   }
   all.insert(of_films.begin(), of_films.end());
+  std::vector<std::set<std::string>> cut;
+  const std::vector<curves::Curve> initial = curves_at_start(input);
+  for (const SymmetryPlane& plane : input.symmetry) {
+    cut.push_back(cut_by(plane, initial));
+  }
   for (const std::string& curve : all) {
-    check_curve(input, curve, of_films.contains(curve), system, values);
+    check_curve(input, curve, of_films.contains(curve), cut, system, values);
   }
 }
 
@@ -273,6 +283,7 @@ void check_symmetry(const Case& input, const EvaluatedCase& inputs,
   const std::size_t before = values.problems().size();
   const films::FilmSystem& system = inputs.film_system;
   check_curves_of(input, system, values);
+  check_cut_curves(input, system, values);
   for (std::size_t k = 0; k < input.films.size(); ++k) {
     check_facets(input, system.films[k].name, system.films[k].start.get(),
                  system.films[k].within, input.films[k].line, values);

@@ -115,6 +115,7 @@ struct FilmEntry {
 struct WettedWall {
   QuantityVector at, normal;
   Quantity contact_angle;  // [rad]
+  bool cuts = false;       // a plane of symmetry that cuts curves of the body
 };
 
 /// A plane in which the part that the case draws is mirrored. What is drawn

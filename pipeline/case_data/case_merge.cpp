@@ -166,6 +166,9 @@ void merge_curves(Case& input, CaseProblems& problems) {
   }
   for (CapEntry& cap : input.caps) {
     std::vector<std::string> names = cap.spec.curves();
+    if (names.empty()) {
+      continue;  // a plane of symmetry cuts it alone
+    }
     rename(kept, "solids." + cap.spec.name, cap.line, names, problems);
     if (cap.is_file) {
       cap.spec.rims = std::move(names);

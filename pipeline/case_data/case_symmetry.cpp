@@ -8,9 +8,6 @@
 
 #include <fmt/format.h>
 
-#include "core/error.h"
-#include "pipeline/case_data/case_curves.h"
-
 namespace meniscus::case_data {
 
 namespace {
@@ -23,19 +20,6 @@ bool names(const std::vector<std::string>& list, const std::string& name) {
   return std::find(list.begin(), list.end(), name) != list.end();
 }
 
-/// At the initial design; empty where they have no numbers, which is told
-/// later.
-std::vector<curves::Curve> initial_curves(const Case& input) {
-  std::vector<std::string> found;
-  try {
-    const CaseValues values(input, initial_design(input), found);
-    std::vector<curves::Curve> curves = curves_of(input, values);
-    return found.empty() ? curves : std::vector<curves::Curve>();
-  } catch (const Error&) {
-    return {};
-  }
-}
-
 QuantityVector constants(const Vec3& vector, const char* key, SourceLine line) {
   QuantityVector result;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -46,21 +30,25 @@ QuantityVector constants(const Vec3& vector, const char* key, SourceLine line) {
   return result;
 }
 
-/// The face that a plane cuts of a body, at these curves.
+/// The face that a plane cuts of a body: films end there at these curves, and
+/// where it `cuts` others.
 CapEntry cut_face(const Case& input, const std::string& body, int plane,
-                  const std::vector<std::string>& curves) {
+                  const std::vector<std::string>& curves, bool cuts) {
   const SymmetryPlane& at = input.symmetry[static_cast<std::size_t>(plane)];
   CapEntry face{.spec = {.name = fmt::format("{}/symmetry_{}", body, plane + 1),
-                         .curve = curves.front()},
+                         .curve = curves.empty() ? "" : curves.front()},
                 .symmetry = plane,
                 .line = at.line};
-  face.spec.more.assign(curves.begin() + 1, curves.end());
+  if (!curves.empty()) {
+    face.spec.more.assign(curves.begin() + 1, curves.end());
+  }
   face.wetted =
       WettedWall{.at = constants(at.at, "at", at.line),
                  .normal = constants(at.normal, "normal", at.line),
                  .contact_angle = {.expression = Expression(kQuarterTurn),
                                    .line = at.line,
-                                   .key = "symmetry.planes"}};
+                                   .key = "symmetry.planes"},
+                 .cuts = cuts};
   return face;
 }
 
@@ -89,7 +77,7 @@ std::vector<std::string> open_in_plane(const Case& input, const BodyEntry& body,
 }
 
 void add_faces(Case& input, int plane, const std::set<std::string>& in_plane,
-               CaseProblems& problems) {
+               const std::vector<std::string>& cut, CaseProblems& problems) {
   std::map<std::string, std::string> body_at;
   for (BodyEntry& body : input.bodies) {
     const std::vector<std::string> curves =
@@ -107,8 +95,11 @@ void add_faces(Case& input, int plane, const std::set<std::string>& in_plane,
         return;
       }
     }
-    if (!curves.empty()) {
-      input.caps.push_back(cut_face(input, body.name, plane, curves));
+    const bool cuts = std::any_of(
+        cut.begin(), cut.end(),
+        [&](const std::string& name) { return names(body.enclosed_by, name); });
+    if (!curves.empty() || cuts) {
+      input.caps.push_back(cut_face(input, body.name, plane, curves, cuts));
       body.enclosed_by.push_back(input.caps.back().spec.name);
     }
   }
@@ -188,7 +179,7 @@ void add_cut_faces(Case& input, CaseProblems& problems) {
   if (input.symmetry.empty()) {
     return;
   }
-  const std::vector<curves::Curve> curves = initial_curves(input);
+  const std::vector<curves::Curve> curves = curves_at_start(input);
   for (std::size_t p = 0; p < input.symmetry.size(); ++p) {
     const int plane = static_cast<int>(p);
     std::set<std::string> in_plane;
@@ -206,7 +197,8 @@ void add_cut_faces(Case& input, CaseProblems& problems) {
         cap.symmetry = plane;
       }
     }
-    add_faces(input, plane, in_plane, problems);
+    add_faces(input, plane, in_plane,
+              surfaces_at(input, cut_by(input.symmetry[p], curves)), problems);
   }
 }
 
@@ -367,8 +359,9 @@ void apply_symmetry(Case& input, CaseProblems& problems) {
   const std::vector<std::string> faces = held_faces(input);
   if (faces.empty()) {
     problems.add(line,
-                 "no body ends in a plane of symmetry: let films end at a "
-                 "closed curve in it, or give it a solid that lies in it");
+                 "no body ends in a plane of symmetry: let it cut curves, let "
+                 "films end at a closed curve in it, or give it a solid that "
+                 "lies in it");
   }
   for (LoadCaseEntry& load_case : input.load_cases) {
     hold(load_case, faces, line, problems);

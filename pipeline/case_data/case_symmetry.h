@@ -2,6 +2,7 @@
 /// its image in [symmetry]'s planes.
 #pragma once
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -18,8 +19,9 @@ int symmetric_parts(const Case& input);
 void check_planes(const Case& input, CaseProblems& problems);
 
 /// After the bodies, before they are checked: finds the solids that lie in a
-/// plane (CapEntry::symmetry), and closes each body whose films end there by a
-/// wetted face BODY/symmetry_1 (of the first plane) at 90 degrees.
+/// plane (CapEntry::symmetry), and closes each body whose films end there, or
+/// of whose curves the plane cuts some, by a wetted face BODY/symmetry_1 (of
+/// the first plane) at 90 degrees.
 void add_cut_faces(Case& input, CaseProblems& problems);
 
 /// After the responses: holds the cut faces in every load case, notes loads,
@@ -27,8 +29,8 @@ void add_cut_faces(Case& input, CaseProblems& problems);
 /// ResponseEntry::images.
 void apply_symmetry(Case& input, CaseProblems& problems);
 
-/// Tells of curves and facets beyond a plane or across it, and of loads and
-/// axes that are not their own images, at one design.
+/// Tells of curves and facets beyond a plane or wrongly across it, and of loads
+/// and axes that are not their own images, at one design.
 void check_symmetry(const Case& input, const EvaluatedCase& inputs,
                     const CaseValues& values);
 
@@ -62,5 +64,24 @@ struct Reach {
 };
 
 Reach reach_of(const SymmetryPlane& plane, const curves::Curve& curve);
+
+/// The case's curves at the initial design; empty where they have no numbers,
+/// which is told later.
+std::vector<curves::Curve> curves_at_start(const Case& input);
+
+/// The names of those that lie on both sides of the plane.
+std::set<std::string> cut_by(const SymmetryPlane& plane,
+                             const std::vector<curves::Curve>& curves);
+
+/// Films and solids that end at some of the curves.
+std::vector<std::string> surfaces_at(const Case& input,
+                                     const std::set<std::string>& curves);
+
+/// Tells of curves across a plane that are not their own images there, or that
+/// pass it elsewhere than at the initial design; of fillets along them, of
+/// facets and STEP solids that end at them, and of loads on what they hold
+/// whose halves are not those of the whole.
+void check_cut_curves(const Case& input, const films::FilmSystem& system,
+                      const CaseValues& values);
 
 }  // namespace meniscus::case_data

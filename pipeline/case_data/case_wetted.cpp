@@ -92,7 +92,8 @@ films::PlaneWall wall_of(const Case& input, const CapEntry& cap,
                          const CaseValues& values) {
   const WettedWall& wetted = *cap.wetted;
   films::PlaneWall wall{.at = values.at(wetted.at),
-                        .normal = values.at(wetted.normal)};
+                        .normal = values.at(wetted.normal),
+                        .cuts = wetted.cuts};
   if (!values.are_rates() && !(wall.normal.norm() > 0.0)) {
     values.problems().push_back(fmt::format(
         "{}: solids.{}.normal is 0; expected a direction across the wall",

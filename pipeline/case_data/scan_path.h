@@ -9,6 +9,9 @@
 namespace meniscus::case_data {
 
 /// Where a case's scan lies: beside the case file, where it is not absolute.
-std::filesystem::path scan_path(const Case& input, const std::string& scan);
+inline std::filesystem::path scan_path(const Case& input,
+                                       const std::string& scan) {
+  return std::filesystem::path(input.path).parent_path() / scan;
+}
 
 }  // namespace meniscus::case_data

@@ -1,6 +1,7 @@
 #include "pipeline/results/export_part.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include <fmt/format.h>
 
@@ -25,6 +26,7 @@
 #include "pipeline/results/run_files.h"
 #include "pipeline/study/ledger.h"
 #include "pipeline/whole/whole_part.h"
+#include "pipeline/whole/whole_system.h"
 
 namespace meniscus::results {
 
@@ -81,9 +83,10 @@ void wall_step(ExportJob& job, const fs::path& file, bool faceted) {
       {.name = job.input().title, .unit = job.input().units.length});
 }
 
-std::vector<step::MirrorPlane> mirrors_of(const case_data::Case& input) {
+std::vector<step::MirrorPlane> mirrors_of(
+    const case_data::Case& input, const std::vector<std::size_t>& planes) {
   std::vector<step::MirrorPlane> mirrors;
-  for (std::size_t p = 0; p < input.symmetry.size(); ++p) {
+  for (const std::size_t p : planes) {
     const case_data::SymmetryPlane& plane = input.symmetry[p];
     mirrors.push_back(
         {plane.at, plane.normal, case_data::cuts_of_whole(input, p)});
@@ -96,12 +99,19 @@ void step(ExportJob& job, const fs::path& file, bool faceted) {
     wall_step(job, file, faceted);
     return;
   }
-  export_step(file, job.inputs().film_system,
+  whole::WholeSystem whole{job.inputs().film_system, {}};
+  if (faceted) {
+    whole.mirrors.resize(job.input().symmetry.size());
+    std::iota(whole.mirrors.begin(), whole.mirrors.end(), 0);
+  } else {
+    whole = whole::whole_system(job.input(), whole.system);
+  }
+  export_step(file, whole.system,
               {.title = job.input().title,
                .unit = job.input().units.length,
                .edge = job.edge().value_or(job.input().resolution.film),
                .faceted = faceted,
-               .mirrors = mirrors_of(job.input()),
+               .mirrors = mirrors_of(job.input(), whole.mirrors),
                .monitor = job.monitor()});
 }
 

@@ -102,9 +102,9 @@ TEST(CaseSymmetry, CurvesBeyondAPlaneAreToldWithTheirLines) {
   expect_problem(half("{ at = [0, 0, 0], normal = [0, 0, 1] }"),
                  "case.toml:21: curve 'head' is 60 beyond plane 1");
   expect_problem(
-      half(std::string(kPlane) + ", { at = [0, 0, 0], normal = [1, 0, 0] }"),
-      "case.toml:15: curve 'base' is 25 beyond plane 2 of symmetry "
-      "at (25, ");
+      half(std::string(kPlane) + ", { at = [5, 0, 0], normal = [1, 0, 0] }"),
+      "case.toml:15: curve 'base' crosses plane 2 of symmetry and is not its "
+      "own image there: it is 20 off");
   expect_problem(
       half(std::string(kPlane) + ", { at = [25, 0, 0], normal = [1, 0, 0] }"),
       "case.toml:15: curve 'base', which holds a film, touches plane "
@@ -114,6 +114,75 @@ TEST(CaseSymmetry, CurvesBeyondAPlaneAreToldWithTheirLines) {
                  "with 'foot' at the end of its bounds");
   expect_problem(half("{ at = [0, 0, -9], normal = [0, 0, -1] }"),
                  "body 'part' is not closed at curve 'base'");
+}
+
+/// The whole strut, which a plane along its axis cuts; the force lies in it.
+std::string cut_strut() {
+  std::string text = changed(strut(), "[curves.base]",
+                             "[symmetry]\nplanes = [{ at = [0, 0, 0], normal = "
+                             "[0, 2, 0] }]\n\n[curves.base]");
+  return changed(text, "sway = 0.01", "sway = 0.01, mass = 1e-4") +
+         "[analysis]\nbuckling = 0\n";
+}
+
+TEST(CaseSymmetry, APlaneCutsCurvesThatAreDrawnWhole) {
+  const case_data::Case input = case_of(cut_strut());
+  EXPECT_THAT(case_data::cut_faces(input), ElementsAre("part/symmetry_1"));
+  EXPECT_THAT(input.bodies[0].enclosed_by,
+              ElementsAre("skin", "foot_pad", "head_pad", "part/symmetry_1"));
+  const auto inputs =
+      case_data::evaluate(input, case_data::initial_design(input));
+  const films::CapSpec& cap = inputs.film_system.caps.back();
+  EXPECT_THAT(cap.curves(), IsEmpty());
+  ASSERT_TRUE(cap.wall.has_value());
+  EXPECT_TRUE(cap.wall->cuts);
+  EXPECT_EQ(inputs.load_cases[0].supports.back().surface, "part/symmetry_1");
+  EXPECT_EQ(input.responses[1].images, 2);
+}
+
+TEST(CaseSymmetry, CurvesThatAPlaneCutsWronglyAreTold) {
+  const std::string head = "center = [0, 0, \"length\"]";
+  EXPECT_THAT(problems_of(cut_strut()), IsEmpty());
+  expect_problem(changed(cut_strut(), head, "center = [0, 1, \"length\"]"),
+                 "curve 'head' crosses plane 1 of symmetry and is not its own "
+                 "image there: it is 4 off");
+  // Only at another design, and of a circle that turns in the plane.
+  expect_problem(changed(cut_strut(), head,
+                         "center = [0, \"(foot - 25) / 10\", \"length\"]"),
+                 "curve 'head' crosses plane 1 of symmetry and is not");
+  expect_problem(changed(cut_strut(), head + "\nnormal = [0, 0, 1]",
+                         head + "\nnormal = [\"(foot - 25) / 10\", 0, 1]"),
+                 "curve 'head' crosses plane 1 of symmetry at other places of "
+                 "its own than at the initial design");
+  expect_problem(
+      changed(cut_strut(), head, "center = [0, \"foot - 50\", \"length\"]"),
+      "curve 'head' is 2 beyond plane 1 of symmetry");
+}
+
+TEST(CaseSymmetry, LoadsOnWhatAPlaneCutsHaveHalvesOfTheWholes) {
+  const auto loaded = [&](const std::string& more) {
+    return changed(cut_strut(), "loads = [", "loads = [" + more + ", ");
+  };
+  for (const char* good : {"{ on = \"head_pad\", force = [3, 0, 1] }",
+                           "{ on = \"skin\", pressure = \"x\" }",
+                           "{ on = \"skin\", traction = [0, 1, 0] }"}) {
+    EXPECT_THAT(problems_of(loaded(good)), IsEmpty()) << good;
+  }
+  expect_problem(loaded("{ on = \"head_pad\", force = [0, 1, 5] }"),
+                 "a force across it on a surface that plane 1 of symmetry "
+                 "cuts");
+  for (const char* bad :
+       {"{ on = \"head_pad\", force = [1, 0, 0], at = [0, 0, 60] }",
+        "{ on = \"head_pad\", force = [1, 0, 0], by = \"rigid\" }",
+        "{ on = \"head_pad\", moment = [0, 1, 0], at = [0, 0, 60] }"}) {
+    expect_problem(loaded(bad),
+                   "a moment, a preload or a force with 'at' or 'by' on a "
+                   "surface that plane 1 of symmetry cuts");
+  }
+  expect_problem(changed(cut_strut(), "[bodies.part]",
+                         "[fillets.root]\ncurves = [\"head\"]\nradius = "
+                         "2\n\n[bodies.part]"),
+                 "a fillet along a curve that plane 1 of symmetry cuts");
 }
 
 TEST(CaseSymmetry, WhatIsNotSymmetricIsTold) {
