@@ -156,7 +156,9 @@ void check_marks(const films::FilmComplex& complex) {
       check_index(v, complex.mesh.points.size(), MayBeNone::No,
                   name + " ends at point");
     }
-    if (edge.a == edge.b || edge.kind == films::VertexKind::InCap) {
+    // Seams of faces in planes of symmetry are inside caps.
+    if (edge.a == edge.b ||
+        (edge.kind == films::VertexKind::InCap && edge.constraints < 0)) {
       throw MeshError(
           fmt::format("{} from {} to {} {}", name, edge.a, edge.b,
                       edge.a == edge.b ? "has no length" : "is inside a cap"));

@@ -139,7 +139,7 @@ TEST(CutPart, HalfAndQuarterAnswerAsTheWhole) {
 
 /// On a boss whose seat is held.
 std::string on_boss(int planes) {
-  std::string text = changed(tube(planes, 6.0), R"toml([curves.low]
+  std::string text = changed(tube(planes, 8.0), R"toml([curves.low]
 kind = "circle"
 center = [0, 0, 0]
 normal = [0, 0, 1]
