@@ -84,7 +84,7 @@ std::optional<Tube> tube_of(const SplitFilm& split, int cell,
   return Tube{found[first ? 0 : 1], found[first ? 1 : 0]};
 }
 
-double length_of(const std::vector<int>& loop, const Points& points) {
+double loop_length(const std::vector<int>& loop, const Points& points) {
   double length = 0.0;
   for (std::size_t k = 0; k < loop.size(); ++k) {
     length += (points[loop[(k + 1) % loop.size()]] - points[loop[k]]).norm();
@@ -110,7 +110,7 @@ ShortLine shortest_line(const Tubes& tubes) {
   }
   std::vector<double> ends;
   for (const Tube& tube : tubes.tubes) {
-    ends.push_back(length_of(tube.top, mesh.points));
+    ends.push_back(loop_length(tube.top, mesh.points));
   }
   ShortLine shortest;
   for (std::size_t tube = 0; tube < tubes.tubes.size(); ++tube) {

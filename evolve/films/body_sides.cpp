@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <set>
-#include <utility>
 
 #include <fmt/format.h>
 
@@ -286,22 +284,6 @@ void orient_bodies(FilmComplex& complex) {
   for (std::size_t f = 0; f < complex.mesh.facets.size(); ++f) {
     if (turn[complex.mesh.facet_label[f]] < 0) {
       std::swap(complex.mesh.facets[f][1], complex.mesh.facets[f][2]);
-    }
-  }
-}
-
-void refuse_overlaps(const FilmComplex& complex) {
-  std::map<std::pair<int, int>, std::string> body_on;
-  for (const ComplexBody& body : complex.bodies) {
-    for (const BodySide& side : body.sides) {
-      const auto [first, fresh] =
-          body_on.try_emplace({side.surface, side.sign}, body.name);
-      if (!fresh) {
-        throw InvalidInput(fmt::format(
-            "bodies '{}' and '{}' lie on the same side of '{}', so that one is "
-            "in the other; list in enclosed_by what each is closed by",
-            first->second, body.name, complex.surfaces[side.surface].name));
-      }
     }
   }
 }

@@ -20,9 +20,6 @@ void require_body(const FilmSystem& system, const std::string& cap);
 /// no outside, or that encloses no volume.
 void orient_bodies(FilmComplex& complex);
 
-/// Throws InvalidInput, naming them, for two bodies on one side of a surface.
-void refuse_overlaps(const FilmComplex& complex);
-
 /// The closed, outward surface of one body, with the complex's labels.
 SurfaceMesh body_surface(const FilmComplex& complex, const ComplexBody& body);
 

@@ -28,13 +28,13 @@ bool sides_cross(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
          parallelogram(d - c, a - c) * parallelogram(d - c, b - c) < 0.0;
 }
 
-Eigen::AlignedBox2d box_of(const Vec2& a, const Vec2& b) {
+Eigen::AlignedBox2d box_around(const Vec2& a, const Vec2& b) {
   Eigen::AlignedBox2d box(a);
   box.extend(b);
   return box;
 }
 
-Eigen::AlignedBox2d box_of(const Polygon& polygon) {
+Eigen::AlignedBox2d box_around(const Polygon& polygon) {
   Eigen::AlignedBox2d box;
   for (const Vec2& p : polygon) {
     box.extend(p);
@@ -45,11 +45,11 @@ Eigen::AlignedBox2d box_of(const Polygon& polygon) {
 /// Of two polygons, or of one with itself.
 bool polygons_cross(const Polygon& p, const Polygon& q) {
   const bool same = &p == &q;
-  const Eigen::AlignedBox2d all = box_of(q);
+  const Eigen::AlignedBox2d all = box_around(q);
   for (std::size_t i = 0; i < p.size(); ++i) {
     const Vec2& a = p[i];
     const Vec2& b = p[(i + 1) % p.size()];
-    if (!box_of(a, b).intersects(all)) {
+    if (!box_around(a, b).intersects(all)) {
       continue;
     }
     for (std::size_t j = same ? i + 1 : 0; j < q.size(); ++j) {
@@ -147,22 +147,11 @@ class Outline {
 }  // namespace
 
 films::FilmSystem with_rims_apart(films::FilmSystem system, double edge) {
-  std::vector<std::vector<std::string>> disks;
   for (const films::FilmSpec& film : system.films) {
-    if (film.kind == films::FilmKind::Disk) {
-      disks.push_back(film.curves);
+    // Who samples the curves refuses an edge of 0.
+    if (film.kind == films::FilmKind::Disk && edge > 0.0) {
+      Outline(system, film.curves, edge).refine();
     }
-  }
-  for (const films::CapSpec& cap : system.caps) {
-    if (!cap.more.empty()) {
-      disks.push_back(cap.curves());
-    }
-  }
-  for (const std::vector<std::string>& names : disks) {
-    if (!(edge > 0.0)) {
-      break;  // who samples the curves says so
-    }
-    Outline(system, names, edge).refine();
   }
   return system;
 }

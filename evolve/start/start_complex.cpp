@@ -496,7 +496,6 @@ class StartBuilder {
     if (turn_shared_disks(raised, result_)) {
       films::orient_bodies(result_);
     }
-    films::refuse_overlaps(result_);
     for (std::size_t b = 0; b < faces.size(); ++b) {
       for (const int label : faces[b]) {
         result_.bodies[b].sides.push_back({label, 1});

@@ -44,6 +44,7 @@ NO_ROOM = {
     "two_arm_sized": {"thick": "no walls", "member": "no family"},
     "bell_crank": {"thick": "no walls", "member": "no family"},
     "h_beam_casting": {"member": "no family"},
+    "ge_bracket": {"thick": "no walls", "member": "no family"},
 }
 KINDS = ("swapped", "open", "crossing", "thick", "member")
 
@@ -479,6 +480,19 @@ WRONG = {
               (r"case\.toml:{line}: curves 'a_root' and 'b_root' meet near ",),
               "[curves.b_root]", "check case.toml --set root=12 --set apart=40 "
               "--set high_b=18"),
+    ],
+    "ge_bracket": [
+        Wrong("swapped", "a bolt's seat and the rim of a well",
+              swapped('"seat_c", "seat_d"]', '"rim_a", "rim_b"]'), 2,
+              (r"curve 'outline': a hole is not inside the curve around it",)),
+        Wrong("open", "the part without its vault",
+              {'["skin", "vault", ': '["skin", '}, 2,
+              not_closed("part", "pocket", "add 'lid'"),
+              'enclosed_by = ["skin"'),
+        Wrong("crossing", "lugs beyond the plateau", {}, 2,
+              (r"case\.toml:{line}: curves 'crest' and 'lug_near/front' meet "
+               r"near \(.*other curves must keep apart",), "[solids.lug_near]",
+              "check case.toml --set pin_x=-10"),
     ],
     "h_beam_casting": [
         Wrong("swapped", "the rings of both blends",

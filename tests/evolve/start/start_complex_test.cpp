@@ -194,13 +194,6 @@ TEST(StartComplex, HollowsGoIntoTheBodyThatTheirFilmIsOf) {
   }
 }
 
-TEST(StartComplex, RefusesBodiesThatLieInEachOther) {
-  films::FilmSystem system = systems::cylinder(2.0);
-  system.bodies.push_back({"again", {"film", "bottom", "top"}, 4.0, {}});
-  EXPECT_THAT(refusal(system), AllOf(HasSubstr("'body' and 'again'"),
-                                     HasSubstr("the same side of 'film'")));
-}
-
 /// Chords of the outer rim cut into the inner one, unless they are shorter.
 TEST(StartComplex, RimsCloserThanTheirChordsBendAreCutFinely) {
   films::FilmSystem system;
