@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 
 #include "evolve/curves/curve.h"
+#include "evolve/curves/curve_shape.h"
 #include "evolve/start/disk_fill.h"
 
 namespace meniscus::start {
@@ -61,6 +62,12 @@ bool polygons_cross(const Polygon& p, const Polygon& q) {
   return false;
 }
 
+/// Sides of curves with corners may be those of other faces, which cut them as
+/// they do.
+bool is_smooth(const curves::Curve& curve) {
+  return curves::curve_shape::part_count(curve.shape) == 1;
+}
+
 /// The curves by which one surface is bounded, as polygons in its plane.
 class Outline {
  public:
@@ -83,7 +90,9 @@ class Outline {
   void refine() {
     for (std::size_t i = 0; i < curves_.size(); ++i) {
       for (std::size_t j = i; j < curves_.size(); ++j) {
-        refine(i, j);
+        if (is_smooth(*curves_[i]) && is_smooth(*curves_[j])) {
+          refine(i, j);
+        }
       }
     }
   }
@@ -147,10 +156,17 @@ class Outline {
 }  // namespace
 
 films::FilmSystem with_rims_apart(films::FilmSystem system, double edge) {
+  if (!(edge > 0.0)) {
+    return system;  // who samples the curves refuses it
+  }
   for (const films::FilmSpec& film : system.films) {
-    // Who samples the curves refuses an edge of 0.
-    if (film.kind == films::FilmKind::Disk && edge > 0.0) {
+    if (film.kind == films::FilmKind::Disk) {
       Outline(system, film.curves, edge).refine();
+    }
+  }
+  for (const films::CapSpec& cap : system.caps) {
+    if (!cap.more.empty()) {
+      Outline(system, cap.curves(), edge).refine();
     }
   }
   return system;

@@ -5,10 +5,10 @@
 
 namespace meniscus::start {
 
-/// The system with the curves of each film of kind disk cut finely enough, by
-/// curves::Curve::fineness, that chords of about `edge` [length] do not cross
-/// where the curves do not, as seen along the normal of the first. Curves that
-/// cross however finely they are cut stay as they were.
+/// The system with the smooth curves of each disk, film or cap, cut finely
+/// enough, by curves::Curve::fineness, that chords of about `edge` [length] do
+/// not cross where the curves do not, as seen along the normal of the first.
+/// Curves that cross however finely they are cut stay as they were.
 films::FilmSystem with_rims_apart(films::FilmSystem system, double edge);
 
 }  // namespace meniscus::start

@@ -43,7 +43,12 @@ class Case(ProgramTest):
             return
         self.expect(self.call("export", part, "--format", "inp", "--out",
                               "own.inp"), 0)
-        self.expect(self.call("solve", "own.inp", "--out", "solved"), 0)
+        deck = self.call("solve", "own.inp", "--out", "solved")
+        if "*EQUATION" in (self.folder / "own.inp").read_text():
+            # A rigid pin's equations are refused by line (docs/decks.md).
+            self.expect(deck, 2, "own.inp:", "EQUATION between several nodes")
+            return
+        self.expect(deck, 0)
         solved = json.loads((self.folder / "solved/result.json").read_text())
         self.assertEqual(list(solved["stress"]), list(result["stress"]))
         pairs = [(solved["fea"]["strain_energy"],
