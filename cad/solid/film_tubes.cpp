@@ -158,16 +158,19 @@ Tubes cut_into_tubes(const SplitFilm& whole) {
     // more loops keeps others apart.
     std::vector<int> between;
     std::vector<int> apart;
+    bool done = true;
     for (int k = 0; k < count; ++k) {
       std::size_t loops = 0;
       const std::optional<Tube> tube = tube_of(result.split, k, loops);
-      if (!tube) {
+      if (loops > 2) {
         between.push_back(k);
-      } else if (count_in(result.nodes, tube->top) < 2) {
+      } else if (tube && count_in(result.nodes, tube->top) < 2) {
         apart.push_back(k);
-      } else {
+      } else if (tube) {
         result.tubes.push_back(*tube);
+        continue;
       }
+      done = false;
     }
     for (const int k : apart) {
       factors[k] /= kShrink;
@@ -175,7 +178,7 @@ Tubes cut_into_tubes(const SplitFilm& whole) {
     for (const int k : between) {
       factors[k] *= apart.empty() ? kShrink : 1.0;
     }
-    if (!between.empty() || !apart.empty()) {
+    if (!done) {
       continue;
     }
     // Lengthen the shortest line between two tubes; the best cut is kept.

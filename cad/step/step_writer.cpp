@@ -128,8 +128,7 @@ void check_by_reading(const std::string& text, const StepShape& shape,
     throw MeshError(fmt::format(
         "read again, the file is {} solid of {} faces and {:.6g} mm3 where {} "
         "faces of {:.6g} mm3 were written; export it as step-faceted, or "
-        "settle "
-        "it with another --edge",
+        "settle it with another --edge",
         valid ? "a" : "no valid", faces, properties.Mass(), shape.faces.size(),
         volume));
   }

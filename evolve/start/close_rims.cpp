@@ -1,8 +1,6 @@
 #include "evolve/start/close_rims.h"
 
 #include <algorithm>
-#include <map>
-#include <set>
 #include <string>
 #include <vector>
 
