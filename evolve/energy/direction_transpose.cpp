@@ -42,8 +42,10 @@ Vec3 unit_rate(const Vec3& v, const Vec3& rate) {
 
 [[noreturn]] void refuse_wall() {
   throw InvalidInput(
-      "a film that slides on curves or on bent walls has no exact gradient: "
-      "hold its rim on a curve, or let it slide on a plane");
+      "a film that slides on curves or on walls of a formula has no exact "
+      "gradient: hold its rim on a curve, or let it slide on a plane, "
+      "cylinder, "
+      "sphere or cone");
 }
 
 }  // namespace
@@ -76,12 +78,17 @@ FilmSpace::WallWay FilmSpace::wall_way(int k, const Points& points,
   }
   const PlaceJet jet =
       jet_at(level_sets_[wall.level_sets[0]].formula, points[v]);
-  if (!jet.hessian.isZero(0.0)) {
-    refuse_wall();
-  }
   WallWay result;
   result.normal = jet.gradient.normalized();
   const Vec3& n = result.normal;
+  if (!jet.hessian.isZero(0.0)) {
+    if (bent_wall(wall) == nullptr) {
+      refuse_wall();
+    }
+    // d(g / |g|) = (I - n n') H dx / |g|
+    result.turn =
+        (jet.hessian - n * (n.transpose() * jet.hessian)) / jet.gradient.norm();
+  }
   result.way = normal2 - normal2.dot(n) * n;
   if (const Edge& ends = line_ends(v); ends[0] >= 0) {
     const Vec3 across = n.cross(points[ends[1]] - points[ends[0]]);
@@ -120,11 +127,15 @@ void FilmSpace::transpose_directions(const Points& points,
       const Vec3 by_way = through_unit(way.way, by_directions[at]);
       const Vec3& n = way.normal;
       const Edge& ends = line_ends(v);
-      if (way.across) {
+      if (way.across) {  // n x t
         sum[ends[1]] += by_way.cross(n);
         sum[ends[0]] -= by_way.cross(n);
-      } else {
+        sum[v] += way.turn.transpose() *
+                  (points[ends[1]] - points[ends[0]]).cross(by_way);
+      } else {  // N - (N . n) n
         by_normal2[v] = by_way - n.dot(by_way) * n;
+        sum[v] -= way.turn.transpose() *
+                  (n.dot(by_way) * normal2[v] + normal2[v].dot(n) * by_way);
       }
     } else if (rank(v) == 1) {
       by_normal2[v] = through_unit(normal2[v], by_directions[at]);
@@ -186,9 +197,14 @@ Points FilmSpace::direction_rates(const Points& points,
       const WallWay way = wall_way(wall_of_[v], points, normal2[v]);
       const Vec3& n = way.normal;
       const Edge& ends = line_ends(v);
+      const Vec3 turned = way.turn * motion[v];
       result[at] = unit_rate(
-          way.way, way.across ? Vec3(n.cross(motion[ends[1]] - motion[ends[0]]))
-                              : Vec3(rate2[v] - n.dot(rate2[v]) * n));
+          way.way,
+          way.across
+              ? Vec3(n.cross(motion[ends[1]] - motion[ends[0]]) +
+                     turned.cross(points[ends[1]] - points[ends[0]]))
+              : Vec3(rate2[v] - n.dot(rate2[v]) * n -
+                     turned.dot(normal2[v]) * n - n.dot(normal2[v]) * turned));
     } else if (rank(v) == 1) {
       result[at] = unit_rate(normal2[v], rate2[v]);
     } else if (rank(v) == 2) {

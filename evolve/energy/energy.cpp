@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/operation_count.h"
+#include "evolve/energy/bent_facets.h"
 #include "evolve/energy/facet_terms.h"
 
 namespace meniscus::energy {
@@ -51,9 +52,15 @@ FilmEnergy::FilmEnergy(const films::FilmComplex& complex, FilmMotion motion)
   }
   for (const films::ComplexSurface& surface : complex.surfaces) {
     liquid_.push_back(surface.liquid ? 1 : 0);
-    counted_.push_back(surface.liquid || surface.wetted ? 1 : 0);
-    wetted_.push_back(surface.wetted);
+    const bool bent = surface.wetted && surface.wetted->bent;
+    const bool flat = surface.wetted && !bent;
+    counted_.push_back(surface.liquid || flat ? 1 : 0);
+    flat_.push_back(flat ? std::optional(surface.wetted->normal)
+                         : std::nullopt);
     plain_.push_back(counted_.back() != 0 && !surface.tension_field ? 1 : 0);
+    if (bent) {
+      add_bent_area(complex, static_cast<int>(side_.size()));
+    }
     resisted_ = resisted_ || surface.tension_field;
     std::vector<int> sides(body_count_, 0);
     const int s = static_cast<int>(side_.size());
@@ -84,6 +91,25 @@ FilmEnergy::FilmEnergy(const films::FilmComplex& complex, FilmMotion motion)
   build_pattern();
 }
 
+void FilmEnergy::add_bent_area(const films::FilmComplex& complex, int surface) {
+  const films::WettedWall& wall = *complex.surfaces[surface].wetted;
+  BentArea& area = bent_.emplace_back();
+  area.surface = surface;
+  area.term = bent_area_term(*wall.bent, wall.side);
+  for (std::size_t f = 0; f < label_.size(); ++f) {
+    if (label_[f] == surface) {
+      area.elements.push_back({static_cast<int>(f), 1.0, 0});
+    }
+  }
+}
+
+FacetJet FilmEnergy::jet_of(const BentArea& area,
+                            const FilmTerm::Element& element,
+                            const Points& points, JetOrder order) const {
+  return area.term->jet(element, corners_of(points, facets_[element.facet]),
+                        order);
+}
+
 double FilmEnergy::value(const Points& points,
                          const films::FilmTargets& targets) const {
   double sum = 0.0;
@@ -99,6 +125,12 @@ double FilmEnergy::value(const Points& points,
     }
   }
   sum *= 0.5;
+  for (const BentArea& area : bent_) {
+    for (const FilmTerm::Element& e : area.elements) {
+      sum += targets.tension[area.surface] *
+             jet_of(area, e, points, JetOrder::Value).value;
+    }
+  }
   for (const auto& term : terms_) {
     if (term->functional() == -1) {
       for (const FilmTerm::Element& e : term->elements()) {
@@ -182,7 +214,7 @@ Points FilmEnergy::gradient(const Points& points,
   VectorX weight(static_cast<Eigen::Index>(plain_.size()));
   for (std::size_t s = 0; s < plain_.size(); ++s) {
     weight[static_cast<Eigen::Index>(s)] =
-        plain_[s] != 0 ? targets.tension[s] : 0.0;
+        has_tension(static_cast<int>(s)) ? targets.tension[s] : 0.0;
   }
   Points sum = area_gradient(points, weight);
   add_term_gradients(points, -1, sum);
@@ -198,6 +230,11 @@ VectorX FilmEnergy::areas(const Points& points) const {
       const Vec3* normal = flat(static_cast<int>(f));
       sum[label_[f]] +=
           0.5 * (normal != nullptr ? normal->dot(area2) : area2.norm());
+    }
+  }
+  for (const BentArea& area : bent_) {
+    for (const FilmTerm::Element& e : area.elements) {
+      sum[area.surface] += jet_of(area, e, points, JetOrder::Value).value;
     }
   }
   return sum;
@@ -228,6 +265,18 @@ Points FilmEnergy::area_gradient(const Points& points,
     sum[t[1]] += at_b;
     sum[t[2]] += at_c;
     sum[t[0]] -= at_b + at_c;
+  }
+  for (const BentArea& area : bent_) {
+    const double w = weight[area.surface];
+    for (const FilmTerm::Element& e : area.elements) {
+      if (w == 0.0) {
+        break;
+      }
+      const FacetJet jet = jet_of(area, e, points, JetOrder::Gradient);
+      for (int k = 0; k < 3; ++k) {
+        sum[facets_[e.facet][k]] += w * jet.gradient.segment<3>(3 * k);
+      }
+    }
   }
   return sum;
 }

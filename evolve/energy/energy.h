@@ -4,6 +4,7 @@
 /// input, same bits.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -15,6 +16,14 @@
 #include "evolve/films/film_targets.h"
 
 namespace meniscus::energy {
+
+/// What a Hessian asks of walls where films slide.
+struct WallBends {
+  Points gradient;  // of E - sum pressure F, one per vertex; empty: no walls
+  /// d2x/dh2 of each unknown (FilmPaths::second); null: of a film that is where
+  /// its directions begin.
+  const Points* second = nullptr;
+};
 
 class FilmEnergy {
  public:
@@ -61,23 +70,28 @@ class FilmEnergy {
   VectorX areas(const Points& points) const;
   Points area_gradient(const Points& points, const VectorX& weight) const;
   /// False: caps, and films whose tension is a field.
-  bool has_tension(int surface) const { return plain_[surface] != 0; }
+  bool has_tension(int surface) const {
+    return plain_[surface] != 0 ||
+           std::any_of(bent_.begin(), bent_.end(), [&](const BentArea& area) {
+             return area.surface == surface;
+           });
+  }
 
   /// What of a gradient (one per vertex) runs along each unknown's direction.
   VectorX along(const Points& slope, const Points& directions) const;
 
   /// Elements of the Hessian of E - sum pressure F along `directions`, packed:
-  /// per facet the lower triangle over its corners' unknowns. `gradient`: of
-  /// that Lagrangian, for the walls' bending.
+  /// per facet the lower triangle over its corners' unknowns.
   void elements(const Points& points, const Points& directions,
                 const films::FilmTargets& targets, const VectorX& pressure,
-                const Points& gradient, std::vector<double>& out) const;
+                const WallBends& bends, std::vector<double>& out) const;
   /// Scatters elements into `out`, which must come from pattern().
   void assemble(const std::vector<double>& elements, SparseMatrix& out) const;
-  /// Lower triangle of the Hessian [force/length].
+  /// Lower triangle of the Hessian [force/length]. `bends`: as
+  /// FilmPaths::second; null: of a film that is where its directions begin.
   void hessian(const Points& points, const Points& directions,
                const films::FilmTargets& targets, const VectorX& pressure,
-               SparseMatrix& out) const;
+               SparseMatrix& out, const Points* bends = nullptr) const;
   const SparseMatrix& pattern() const { return pattern_; }
   /// Fill-reducing order of pattern(), found at the first call.
   const std::vector<int>& order() const;
@@ -109,9 +123,18 @@ class FilmEnergy {
   Vec3 cone_origin(const Points& points) const;
   /// The normal that a facet's area counts along; null: its own.
   const Vec3* flat(int facet) const {
-    const std::optional<Vec3>& normal = wetted_[label_[facet]];
+    const std::optional<Vec3>& normal = flat_[label_[facet]];
     return normal ? &*normal : nullptr;
   }
+  /// The area of a surface on a bent wall.
+  struct BentArea {
+    int surface = 0;
+    std::unique_ptr<FilmTerm> term;
+    std::vector<FilmTerm::Element> elements;
+  };
+  void add_bent_area(const films::FilmComplex& complex, int surface);
+  FacetJet jet_of(const BentArea& area, const FilmTerm::Element& element,
+                  const Points& points, JetOrder order) const;
   std::vector<double> pressure_jumps(const VectorX& pressure) const;
   void add_term_gradients(const Points& points, int functional,
                           Points& sum) const;
@@ -122,6 +145,9 @@ class FilmEnergy {
   void add_wall_curvature(const Points& points, const Points& directions,
                           const Points& gradient,
                           std::vector<double>& out) const;
+  void add_bends(const WallBends& bends, std::vector<double>& out) const;
+  void add_jet(int facet, double factor, const FacetJet& jet,
+               const Points& directions, std::vector<double>& out) const;
   void add_block(int facet, int corner_a, int corner_b,
                  const Eigen::Matrix3d& block, const Points& directions,
                  std::vector<double>& out) const;
@@ -129,13 +155,14 @@ class FilmEnergy {
   FilmSpace space_;
   std::vector<Triangle> facets_;
   std::vector<int> label_;
-  std::vector<char> liquid_;                 // per surface
-  std::vector<char> counted_;                // per surface: liquid or wetted
-  std::vector<std::optional<Vec3>> wetted_;  // per surface: along what normal
-  std::vector<char> plain_;                  // per surface: tension is a number
-  std::vector<std::vector<int>> side_;       // per surface, per body
-  std::vector<char> cone_;                   // per body: cones measure it
-  bool open_cones_ = false;  // of a body that facets do not close
+  std::vector<char> liquid_;   // per surface
+  std::vector<char> counted_;  // per surface: liquid or wetted on a plane
+  std::vector<std::optional<Vec3>> flat_;  // per surface: along what normal
+  std::vector<BentArea> bent_;
+  std::vector<char> plain_;             // per surface: tension is a number
+  std::vector<std::vector<int>> side_;  // per surface, per body
+  std::vector<char> cone_;              // per body: cones measure it
+  bool open_cones_ = false;             // of a body that facets do not close
   VectorX volume_offset_;
   std::vector<std::unique_ptr<FilmTerm>> terms_;
   int body_count_ = 0;

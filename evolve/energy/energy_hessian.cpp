@@ -120,7 +120,7 @@ std::vector<double> FilmEnergy::pressure_jumps(const VectorX& pressure) const {
 
 void FilmEnergy::elements(const Points& points, const Points& directions,
                           const films::FilmTargets& targets,
-                          const VectorX& pressure, const Points& gradient,
+                          const VectorX& pressure, const WallBends& bends,
                           std::vector<double>& out) const {
   out.assign(element_start_.back(), 0.0);
   count_operations(hessian_work(corner_start_));
@@ -164,8 +164,46 @@ void FilmEnergy::elements(const Points& points, const Points& directions,
   // Fields bring their own second derivatives; walls bring the curvature of the
   // surface that vertices slide on, (grad L . n) II.
   add_terms(points, pressure, directions, out);
-  if (space_.has_walls()) {
-    add_wall_curvature(points, directions, gradient, out);
+  for (const BentArea& area : bent_) {
+    for (const FilmTerm::Element& e : area.elements) {
+      add_jet(e.facet, targets.tension[area.surface],
+              jet_of(area, e, points, JetOrder::Hessian), directions, out);
+    }
+  }
+  if (bends.second != nullptr) {
+    add_bends(bends, out);
+  } else if (space_.has_walls()) {
+    add_wall_curvature(points, directions, bends.gradient, out);
+  }
+}
+
+void FilmEnergy::add_jet(int facet, double factor, const FacetJet& jet,
+                         const Points& directions,
+                         std::vector<double>& out) const {
+  for (int a = 0; a < 3; ++a) {
+    for (int b = 0; b <= a; ++b) {
+      add_block(facet, a, b, factor * jet.hessian.block<3, 3>(3 * a, 3 * b),
+                directions, out);
+    }
+  }
+}
+
+/// Each unknown's once: at the first of its vertex's facets.
+void FilmEnergy::add_bends(const WallBends& bends,
+                           std::vector<double>& out) const {
+  std::vector<char> done(unknowns(), 0);
+  for (std::size_t f = 0; f < facets_.size(); ++f) {
+    int slot = element_start_[f];
+    for (int i = corner_start_[f]; i < corner_start_[f + 1]; ++i) {
+      slot += i - corner_start_[f];  // to the diagonal
+      const int unknown = corners_[i].unknown;
+      if (done[unknown] == 0) {
+        done[unknown] = 1;
+        out[slot] +=
+            bends.gradient[vertices()[unknown]].dot((*bends.second)[unknown]);
+      }
+      ++slot;
+    }
   }
 }
 
@@ -198,13 +236,7 @@ void FilmEnergy::add_terms(const Points& points, const VectorX& pressure,
     for (const FilmTerm::Element& e : term->elements()) {
       const FacetJet jet =
           term->jet(e, corners_of(points, facets_[e.facet]), JetOrder::Hessian);
-      for (int a = 0; a < 3; ++a) {
-        for (int b = 0; b <= a; ++b) {
-          add_block(e.facet, a, b,
-                    factor * jet.hessian.block<3, 3>(3 * a, 3 * b), directions,
-                    out);
-        }
-      }
+      add_jet(e.facet, factor, jet, directions, out);
     }
   }
 }
@@ -241,19 +273,20 @@ void FilmEnergy::assemble(const std::vector<double>& elements,
 
 void FilmEnergy::hessian(const Points& points, const Points& directions,
                          const films::FilmTargets& targets,
-                         const VectorX& pressure, SparseMatrix& out) const {
-  Points slope;
+                         const VectorX& pressure, SparseMatrix& out,
+                         const Points* bends) const {
+  WallBends walls{.second = bends};
   if (space_.has_walls()) {
-    slope = gradient(points, targets);
+    walls.gradient = gradient(points, targets);
     for (int b = 0; b < functional_count_; ++b) {
       const Points more = functional_gradient(points, b);
-      for (std::size_t v = 0; v < slope.size(); ++v) {
-        slope[v] -= pressure[b] * more[v];
+      for (std::size_t v = 0; v < more.size(); ++v) {
+        walls.gradient[v] -= pressure[b] * more[v];
       }
     }
   }
   std::vector<double> entries;
-  elements(points, directions, targets, pressure, slope, entries);
+  elements(points, directions, targets, pressure, walls, entries);
   assemble(entries, out);
 }
 

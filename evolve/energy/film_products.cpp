@@ -46,7 +46,7 @@ FilmProducts::FilmProducts(const FilmEnergy& energy,
       energies_(1.0),
       pressure_(std::move(pressure)) {
   for (std::size_t s = 0; s < energy.plain_.size(); ++s) {
-    if (energy.plain_[s] != 0) {
+    if (energy.has_tension(static_cast<int>(s))) {
       tension_[static_cast<Eigen::Index>(s)] = targets.tension[s];
     }
   }
@@ -74,13 +74,47 @@ VectorX FilmProducts::over_films(const Points& points, const Points& motion,
   return sum;
 }
 
+/// The facets' motion as one vector, and what of bent faces' areas goes with
+/// it.
+template <class OfJet>
+void FilmProducts::over_bent(const Points& points, const Points& motion,
+                             JetOrder order, const OfJet& of_jet) const {
+  for (const FilmEnergy::BentArea& area : energy_.bent_) {
+    for (const FilmTerm::Element& e : area.elements) {
+      const Triangle& at = energy_.facets_[e.facet];
+      Eigen::Matrix<double, 9, 1> d;
+      d << motion[at[0]], motion[at[1]], motion[at[2]];
+      if (!d.isZero(0.0)) {
+        of_jet(area.surface, at, energy_.jet_of(area, e, points, order), d);
+      }
+    }
+  }
+}
+
 VectorX FilmProducts::area_rates(const Points& points,
                                  const Points& motion) const {
-  return over_films(points, motion,
-                    [](const FacetFrame& frame, const FacetMotion& moved,
-                       const Corners& /*d*/) {
-                      return 0.5 * frame.normal.dot(moved.normal2);
-                    });
+  VectorX sum = over_films(points, motion,
+                           [](const FacetFrame& frame, const FacetMotion& moved,
+                              const Corners& /*d*/) {
+                             return 0.5 * frame.normal.dot(moved.normal2);
+                           });
+  over_bent(points, motion, JetOrder::Gradient,
+            [&](int surface, const Triangle& /*at*/, const FacetJet& jet,
+                const auto& d) { sum[surface] += jet.gradient.dot(d); });
+  return sum;
+}
+
+void FilmProducts::add_bent(const Points& points, const Points& motion,
+                            double factor, Points& sum) const {
+  over_bent(
+      points, motion, JetOrder::Hessian,
+      [&](int surface, const Triangle& at, const FacetJet& jet, const auto& d) {
+        const Eigen::Matrix<double, 9, 1> product =
+            factor * tension_[surface] * (jet.hessian * d);
+        for (int i = 0; i < 3; ++i) {
+          sum[at[i]] += product.template segment<3>(3 * i);
+        }
+      });
 }
 
 void FilmProducts::add_facets(const Points& points, const Points& motion,
@@ -91,7 +125,7 @@ void FilmProducts::add_facets(const Points& points, const Points& motion,
   for (std::size_t f = 0; f < e.facets_.size(); ++f) {
     const Triangle& at = e.facets_[f];
     const int label = e.label_[f];
-    const double t = tension_[label];
+    const double t = e.plain_[label] != 0 ? tension_[label] : 0.0;
     const double p = jump[label];
     if (t == 0.0 && p == 0.0) {
       continue;
@@ -149,18 +183,23 @@ Points FilmProducts::hessian_times(const Points& points,
                                    const Points& motion) const {
   Points sum(points.size(), Vec3::Zero());
   add_facets(points, motion, sum);
+  add_bent(points, motion, 1.0, sum);
   add_terms(points, motion, 1.0, sum);
   return sum;
 }
 
 VectorX FilmProducts::area_curvatures(const Points& points,
                                       const Points& motion) const {
-  return over_films(
+  VectorX sum = over_films(
       points, motion,
       [](const FacetFrame& frame, const FacetMotion& moved, const Corners& d) {
         const Vec3 bend = (d[1] - d[0]).cross(d[2] - d[0]);
         return 0.5 * moved.normal.dot(moved.normal2) + frame.normal.dot(bend);
       });
+  over_bent(points, motion, JetOrder::Hessian,
+            [&](int surface, const Triangle& /*at*/, const FacetJet& jet,
+                const auto& d) { sum[surface] += d.dot(jet.hessian * d); });
+  return sum;
 }
 
 /// With N(x + s d) = N + s N1 + s^2 N2, m = N1 - (n.N1) n and a the area,
@@ -179,7 +218,8 @@ Points FilmProducts::third_times(const Points& points,
     const Corners d = corners_of(motion, at);
     const FacetFrame frame(c[0], c[1], c[2], e.flat(static_cast<int>(f)));
     const FacetMotion moved(frame, d);
-    const double t = frame.turns ? tension_[e.label_[f]] : 0.0;
+    const bool counts = frame.turns && e.plain_[e.label_[f]] != 0;
+    const double t = counts ? tension_[e.label_[f]] : 0.0;
     const double p = jump[e.label_[f]];
     const Vec3& n = frame.normal;
     Vec3 by_first = Vec3::Zero();
@@ -213,6 +253,7 @@ Points FilmProducts::third_times(const Points& points,
     for (const auto& [times, weight] : kSlope) {
       Points moved = points;
       flat(moved) += times * step * flat(motion);
+      add_bent(moved, motion, weight / step, sum);
       add_terms(moved, motion, weight / step, sum);
     }
   }
@@ -220,9 +261,11 @@ Points FilmProducts::third_times(const Points& points,
 }
 
 bool FilmProducts::has_terms() const {
-  return std::any_of(
-      energy_.terms_.begin(), energy_.terms_.end(),
-      [&](const auto& term) { return weight_of(term->functional()) != 0.0; });
+  return !energy_.bent_.empty() ||
+         std::any_of(energy_.terms_.begin(), energy_.terms_.end(),
+                     [&](const auto& term) {
+                       return weight_of(term->functional()) != 0.0;
+                     });
 }
 
 Points FilmProducts::metric_gradient(const Points& points,

@@ -36,8 +36,13 @@ class FilmProducts {
   template <class OfFacet>
   VectorX over_films(const Points& points, const Points& motion,
                      const OfFacet& of_facet) const;
+  template <class OfJet>
+  void over_bent(const Points& points, const Points& motion, JetOrder order,
+                 const OfJet& of_jet) const;
   void add_facets(const Points& points, const Points& motion,
                   Points& sum) const;
+  void add_bent(const Points& points, const Points& motion, double factor,
+                Points& sum) const;
   void add_terms(const Points& points, const Points& motion, double factor,
                  Points& sum) const;
   double weight_of(int functional) const;

@@ -321,6 +321,46 @@ Points FilmSpace::moved(const Points& points, const Points& directions,
   return result;
 }
 
+bool FilmSpace::has_bent_walls() const {
+  return std::any_of(walls_.begin(), walls_.end(), [&](const Wall& wall) {
+    return bent_wall(wall) != nullptr;
+  });
+}
+
+const films::BentWall* FilmSpace::bent_wall(const Wall& wall) const {
+  if (wall.curve >= 0 || wall.level_sets.size() != 1) {
+    return nullptr;
+  }
+  const films::LevelSet& level = level_sets_[wall.level_sets[0]];
+  return level.bent ? &*level.bent : nullptr;
+}
+
+FilmPaths FilmSpace::paths(const Points& points, const Points& directions,
+                           const VectorX& heights) const {
+  FilmPaths result{directions, {}, {}};
+  if (!has_bent_walls()) {
+    return result;
+  }
+  result.second.assign(directions.size(), Vec3::Zero());
+  for (std::size_t k = 0; k < walled_.size(); ++k) {
+    const int v = walled_[k];
+    const films::BentWall* wall = bent_wall(walls_[k]);
+    if (wall == nullptr || rank(v) != 1) {
+      continue;
+    }
+    const int i = first_[v];
+    const Vec3& n = directions[i];
+    const Vec3 place = points[v] + heights[i] * n;
+    const films::OntoWall onto = films::onto_wall_jet(*wall, place);
+    result.first[i] = onto.slope * n;
+    for (int c = 0; c < 3; ++c) {
+      result.second[i][c] = n.dot(onto.bend[c] * n);
+    }
+    result.bent.push_back({i, v, n, *wall, place, onto});
+  }
+  return result;
+}
+
 void FilmSpace::project(Points& points) const {
   for (std::size_t k = 0; k < walled_.size(); ++k) {
     Vec3& at = points[walled_[k]];
@@ -338,6 +378,9 @@ void FilmSpace::project(Points& points) const {
 Vec3 FilmSpace::back_on(const Wall& wall, Vec3 at) const {
   if (wall.curve >= 0) {
     return curves::point_at(curves_[wall.curve].shape, nearest(wall, at));
+  }
+  if (const films::BentWall* bent = bent_wall(wall); bent != nullptr) {
+    return films::onto_wall(*bent, at);
   }
   const auto count = static_cast<Eigen::Index>(wall.level_sets.size());
   Eigen::MatrixX3d rows(count, 3);

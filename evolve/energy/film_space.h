@@ -17,6 +17,22 @@ enum class FilmMotion {
             // where coarse facets have less area, as Surface Evolver's `g` does
 };
 
+/// How vertices move with heights h along directions n from base points X: on
+/// walls x = P(X + h n), P the nearest point of a cylinder, sphere or cone.
+struct FilmPaths {
+  struct Bent {
+    int unknown = 0;
+    int vertex = 0;
+    Vec3 direction = Vec3::Zero();  // n
+    films::BentWall wall;
+    Vec3 place = Vec3::Zero();  // X + h n
+    films::OntoWall onto;       // P there
+  };
+  Points first;   // dx/dh, one per unknown
+  Points second;  // d2x/dh2, one per unknown; empty: no walls but planes
+  std::vector<Bent> bent;
+};
+
 class FilmSpace {
  public:
   /// Takes topology, kinds and constraints, no positions. Throws MeshError for
@@ -49,8 +65,7 @@ class FilmSpace {
 
   /// directions() transposed: adds to `sum`, one per vertex, the gradient by
   /// the points of something whose gradient by each direction is given. Throws
-  /// InvalidInput for films that slide on curves or on walls that are no
-  /// planes.
+  /// InvalidInput for films that slide on curves or on walls of a formula.
   void transpose_directions(const Points& points, const Points& by_directions,
                             Points& sum) const;
 
@@ -61,6 +76,11 @@ class FilmSpace {
   /// points + h d at every unknown's vertex, back on the walls.
   Points moved(const Points& points, const Points& directions,
                const VectorX& heights) const;
+
+  /// True where films slide on cylinders, spheres or cones.
+  bool has_bent_walls() const;
+  FilmPaths paths(const Points& points, const Points& directions,
+                  const VectorX& heights) const;
 
   /// Puts every walled vertex back on its walls. Throws MeshError, with the
   /// place, when one cannot be reached.
@@ -87,6 +107,8 @@ class FilmSpace {
   void orient(const std::vector<Triangle>& facet_edges,
               const std::vector<Triangle>& facets,
               const std::vector<char>& film, int edge_count);
+  /// A cylinder, sphere or cone; null: others.
+  const films::BentWall* bent_wall(const Wall& wall) const;
   Vec3 back_on(const Wall& wall, Vec3 at) const;
   double nearest(const Wall& wall, const Vec3& at) const;
   void wall_directions(int k, const Points& points, const Vec3& normal,
@@ -94,6 +116,7 @@ class FilmSpace {
   struct WallWay {
     Vec3 normal = Vec3::Zero();  // of the wall, unit
     Vec3 way = Vec3::Zero();
+    Eigen::Matrix3d turn = Eigen::Matrix3d::Zero();  // d normal / d place
     bool across = false;  // of the film's edge, not along the film's normal
   };
   bool runs_along_planes(int k, const Points& points) const;

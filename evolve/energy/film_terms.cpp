@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/geometry/edge_key.h"
+#include "evolve/energy/bent_facets.h"
 #include "evolve/energy/term_kinds.h"
 
 namespace meniscus::energy {
@@ -75,6 +76,21 @@ class FilmTermBuilder {
       if (complex_.volume_rule == films::VolumeRule::Column &&
           !closed_by_facets(complex_, body)) {
         add(flux_term(column_field), facets_of_body(body, 1.0), body);
+      }
+    }
+  }
+
+  /// What cones over the flat facets of bent faces leave out.
+  void add_lenses() {
+    for (std::size_t s = 0; s < complex_.surfaces.size(); ++s) {
+      const auto& wetted = complex_.surfaces[s].wetted;
+      for (std::size_t b = 0; b < complex_.bodies.size(); ++b) {
+        const auto body = static_cast<int>(b);
+        const int sign = side(static_cast<int>(s), body);
+        if (wetted && wetted->bent && sign != 0) {
+          add(bent_lens_term(*wetted->bent),
+              facets_of({static_cast<int>(s)}, sign), body);
+        }
       }
     }
   }
@@ -283,6 +299,7 @@ std::vector<std::unique_ptr<FilmTerm>> film_terms(
   FilmTermBuilder builder(complex);
   builder.add_tension();
   builder.add_bodies();
+  builder.add_lenses();
   builder.add_lines();
   builder.add_quantities();
   return builder.take();

@@ -26,7 +26,7 @@ void FilmEnergy::find_floating(const films::FilmComplex& complex) {
   // The inside of a face that films wet goes where its rim slides.
   for (std::size_t f = 0; f < facets_.size(); ++f) {
     for (const int v : facets_[f]) {
-      if (wetted_[label_[f]] &&
+      if (complex.surfaces[label_[f]].wetted &&
           complex.vertices[v].kind == films::VertexKind::InCap) {
         held[v] = 0;
       }

@@ -11,7 +11,7 @@ constexpr double kAccuracy = 1e-13;  // of the right sides, relative
 
 SaddleSystem::SaddleSystem(const FilmEnergy& energy,
                            const films::FilmTargets& targets,
-                           const Points& points, const Points& directions,
+                           const Points& points, const FilmPaths& paths,
                            const VectorX& pressure)
     : metric_(energy.lumped_area(points)),
       hessian_(energy.pattern()),
@@ -24,13 +24,14 @@ SaddleSystem::SaddleSystem(const FilmEnergy& energy,
   }
   const auto count = static_cast<Eigen::Index>(held_.size());
   const Eigen::MatrixXd rigid =
-      energy.rigid_motions(points, directions, metric_);
+      energy.rigid_motions(points, paths.first, metric_);
   constraints_.resize(energy.unknowns(), count + rigid.cols());
   for (Eigen::Index k = 0; k < count; ++k) {
-    constraints_.col(k) = energy.along(slopes_[held_[k]], directions);
+    constraints_.col(k) = energy.along(slopes_[held_[k]], paths.first);
   }
   constraints_.rightCols(rigid.cols()) = rigid;
-  energy.hessian(points, directions, targets, pressure, hessian_);
+  energy.hessian(points, paths.first, targets, pressure, hessian_,
+                 paths.second.empty() ? nullptr : &paths.second);
   factored_ = system_.factorize(hessian_, metric_, 0.0, constraints_);
 }
 

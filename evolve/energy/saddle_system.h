@@ -11,10 +11,10 @@ namespace meniscus::energy {
 
 class SaddleSystem {
  public:
-  /// At `points`, along `directions` (one per unknown), under `pressure` (one
-  /// per functional). `energy` must outlive this.
+  /// At `points`, along `paths`, under `pressure` (one per functional).
+  /// `energy` must outlive this.
   SaddleSystem(const FilmEnergy& energy, const films::FilmTargets& targets,
-               const Points& points, const Points& directions,
+               const Points& points, const FilmPaths& paths,
                const VectorX& pressure);
 
   /// False: the Hessian is not finite; nothing below may then be asked.

@@ -12,6 +12,7 @@
 #include "core/geometry/exact_shape.h"
 #include "core/geometry/surface_mesh.h"
 #include "core/math/expression.h"
+#include "evolve/films/bent_wall.h"
 #include "evolve/films/film_system.h"
 #include "evolve/films/ruled_band.h"
 
@@ -64,6 +65,7 @@ struct LevelSet {
   Expression formula;  // over x, y, z
   Side side = Side::On;
   bool convex = false;  // free marked edges on it carry gap energy
+  std::optional<BentWall> bent = std::nullopt;  // the wall of the formula
 };
 
 /// Line integral of a vector field along marked edges: energy of walls that
@@ -77,6 +79,13 @@ struct LineIntegral {
   VectorField field;
 };
 
+/// The wall behind a face that films wet.
+struct WettedWall {
+  Vec3 normal = Vec3::Zero();  // unit, that the facets on a plane have
+  std::optional<BentWall> bent = std::nullopt;  // no plane
+  double side = 1.0;  // -1: facets on a bent wall have their normals inward
+};
+
 struct ComplexSurface {
   std::string name;
   bool liquid = true;    // false: solid, its facets carry no tension
@@ -86,10 +95,10 @@ struct ComplexSurface {
   int constraints = -1;  // of the vertices born inside it (obstacles)
   int band = -1;         // of a ring: index into bands
   int face = -1;         // of a solid's face: index into solid_faces
-  /// Of a solid face that films wet on a plane wall: the unit normal that its
-  /// facets have. Its area along that normal counts with `tension`, which may
-  /// be below 0; `constraints` is of its rim, which slides on the wall.
-  std::optional<Vec3> wetted;
+  /// Of a solid face that films wet. Its area on the wall counts with
+  /// `tension`, which may be below 0; `constraints` is of its rim, which slides
+  /// there.
+  std::optional<WettedWall> wetted;
 };
 
 /// An edge or a face of a solid from a CAD program.

@@ -12,6 +12,7 @@
 #include "core/geometry/exact_shape.h"
 #include "core/math/expression.h"
 #include "evolve/curves/curve.h"
+#include "evolve/films/bent_wall.h"
 #include "evolve/films/field_spec.h"
 
 namespace meniscus::films {
@@ -40,10 +41,14 @@ struct FilmSpec {
   double within = 0.0;  // its rims may be so far off their curves [length]
 };
 
-/// A plane that films slide on where their curves lie in it.
-struct PlaneWall {
-  Vec3 at = Vec3::Zero();       // a point of it [length]
-  Vec3 normal = Vec3::UnitZ();  // not 0; either way, any length
+/// A plane, cylinder, sphere or cone that films slide on where their curves lie
+/// on it.
+struct FilmWall {
+  /// A point of the plane or of a cylinder's axis, a center, an apex [length].
+  Vec3 at = Vec3::Zero();
+  /// Not 0, any length: of a plane, either way; the axis of a cylinder, either
+  /// way, and of a cone, from the apex into it.
+  Vec3 normal = Vec3::UnitZ();
   /// Energy per wetted area [force/length]: -T cos a for films of tension T
   /// that meet the wall at the contact angle a, measured in the body (Young).
   double tension = 0.0;
@@ -51,6 +56,17 @@ struct PlaneWall {
   /// that `normal` points to, is left out of the start, and films, rings and
   /// flat disks end there. Its cap need not name a curve then. Tension 0.
   bool cuts = false;
+  WallKind kind = WallKind::Plane;
+  double radius = 0.0;      // of cylinder and sphere, above 0 [length]
+  double half_angle = 0.0;  // of a cone, above 0 and below pi / 2
+
+  /// None of a plane.
+  std::optional<BentWall> bent() const {
+    if (kind == WallKind::Plane) {
+      return std::nullopt;
+    }
+    return BentWall{kind, at, normal.normalized(), radius, half_angle};
+  }
 };
 
 /// A solid from a CAD program whose faces are caps (CapSpec::solid).
@@ -88,7 +104,7 @@ struct CapSpec {
   /// Of a disk: the face that a body wets on this wall. Its curves are where
   /// the films on them begin; they hold nothing. The same for every design of a
   /// model but for its tension.
-  std::optional<PlaneWall> wall = std::nullopt;
+  std::optional<FilmWall> wall = std::nullopt;
   /// Instead of these a face of one of the system's solids; `rims` are the
   /// solid's rims at which it ends.
   int solid = -1;

@@ -48,6 +48,24 @@ Carry::Part Carry::part_of(const films::ComplexSurface& surface) {
                         : (surface.wetted ? Part::Wetted : Part::Caps);
 }
 
+/// The surface of a facet on a bent wall, else -1.
+int Carry::bent_face(const films::FilmComplex& reference, int facet) {
+  const int label = reference.mesh.facet_label[facet];
+  const auto& wetted = reference.surfaces[label].wetted;
+  return wetted && wetted->bent ? label : -1;
+}
+
+/// A cone's apex stays.
+bool Carry::is_apex(const films::FilmComplex& reference, int facet, int v) {
+  const int label = bent_face(reference, facet);
+  if (label < 0) {
+    return false;
+  }
+  const films::BentWall& wall = *reference.surfaces[label].wetted->bent;
+  return wall.kind == films::WallKind::Cone &&
+         reference.mesh.points[v] == wall.at;
+}
+
 /// Vertices of a part that facets link to its rim; others, of parts that float,
 /// stay where they are. What caps and wetted faces have in common is of caps.
 std::vector<char> Carry::carried_vertices(const films::FilmComplex& reference,
@@ -63,7 +81,9 @@ std::vector<char> Carry::carried_vertices(const films::FilmComplex& reference,
     const Triangle& t = mesh.facets[f];
     for (const int v : t) {
       own[v] = own[v] != 0 || here == part ? 1 : 0;
-      of_caps[v] = of_caps[v] != 0 || here == Part::Caps ? 1 : 0;
+      const bool stays =
+          here == Part::Caps || is_apex(reference, static_cast<int>(f), v);
+      of_caps[v] = of_caps[v] != 0 || stays ? 1 : 0;
     }
     if (here == part) {
       parts.join(t[0], t[1]);
@@ -197,6 +217,17 @@ Carry::Carry(const films::FilmComplex& reference,
       films_(extend(reference, Part::Films, film_order)),
       caps_(extend(reference, Part::Caps, {})),
       wetted_(extend(reference, Part::Wetted, {})) {
+  std::vector<int> face(reference.vertices.size(), -1);
+  for (std::size_t f = 0; f < reference.mesh.facets.size(); ++f) {
+    for (const int v : reference.mesh.facets[f]) {
+      face[v] = std::max(face[v], bent_face(reference, static_cast<int>(f)));
+    }
+  }
+  for (const int v : wetted_.vertices) {
+    if (face[v] >= 0) {
+      on_bent_.push_back({v, *reference.surfaces[face[v]].wetted->bent});
+    }
+  }
   for (std::size_t v = 0; v < reference.vertices.size(); ++v) {
     const films::ComplexVertex& vertex = reference.vertices[v];
     const auto id = static_cast<int>(v);
@@ -330,30 +361,54 @@ Points Carry::at(const Points& rim_moves, double fraction) const {
   return result;
 }
 
-void Carry::follow_rates(Points& rates) const {
+/// Where wetted faces go by weights alone.
+Points Carry::by_weights(const Points& points) const {
+  Points moves(points.size());
+  for (std::size_t v = 0; v < points.size(); ++v) {
+    moves[v] = points[v] - reference_[v];
+  }
+  for (const int v : wetted_.vertices) {
+    moves[v].setZero();
+  }
+  apply(wetted_, moves);
+  for (std::size_t v = 0; v < points.size(); ++v) {
+    moves[v] += reference_[v];
+  }
+  return moves;
+}
+
+void Carry::follow_rates(const Points& points, Points& rates) const {
   if (slides_) {
     for (const int v : wetted_.vertices) {
       rates[v].setZero();
     }
     apply(wetted_, rates);
+    const Points flat = on_bent_.empty() ? Points() : by_weights(points);
+    for (const auto& [v, wall] : on_bent_) {
+      rates[v] = films::onto_wall_jet(wall, flat[v]).slope * rates[v];
+    }
   }
 }
 
 void Carry::follow(Points& points) const {
   if (slides_) {
-    Points moves(points.size());
-    for (std::size_t v = 0; v < points.size(); ++v) {
-      moves[v] = points[v] - reference_[v];
-    }
-    follow_rates(moves);
+    const Points flat = by_weights(points);
     for (const int v : wetted_.vertices) {
-      points[v] = reference_[v] + moves[v];
+      points[v] = flat[v];
+    }
+    for (const auto& [v, wall] : on_bent_) {
+      points[v] = films::onto_wall(wall, flat[v]);
     }
   }
 }
 
-void Carry::fold_caps(Points& by_points) const {
+void Carry::fold_caps(const Points& points, Points& by_points) const {
   if (slides_ && !by_points.empty()) {
+    const Points flat = on_bent_.empty() ? Points() : by_weights(points);
+    for (const auto& [v, wall] : on_bent_) {
+      by_points[v] =
+          films::onto_wall_jet(wall, flat[v]).slope.transpose() * by_points[v];
+    }
     const Points by_caps = by_points;
     add_transposed(wetted_, by_caps, by_points);
     for (const int v : wetted_.vertices) {

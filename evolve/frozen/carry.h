@@ -47,10 +47,10 @@ class Carry {
   /// `points`, have them: X, but from rims that have slid on walls.
   void follow(Points& points) const;
 
-  /// follow() for rates of all vertices, and transposed: a gradient by the
-  /// vertices that wetted faces follow, zero inside these.
-  void follow_rates(Points& rates) const;
-  void fold_caps(Points& by_points) const;
+  /// follow() to `points` for rates of all vertices, and transposed: a gradient
+  /// by the vertices that wetted faces follow, zero inside these.
+  void follow_rates(const Points& points, Points& rates) const;
+  void fold_caps(const Points& points, Points& by_points) const;
 
   /// How fast at(., 1) moves with the rim vertices' own rates.
   Points rates(const Points& rim_rates) const;
@@ -73,6 +73,9 @@ class Carry {
   void add_stands_on_frame(const films::FilmComplex& reference, int vertex,
                            int frame);
   enum class Part { Films, Caps, Wetted };
+  static int bent_face(const films::FilmComplex& reference, int facet);
+  static bool is_apex(const films::FilmComplex& reference, int facet, int v);
+  Points by_weights(const Points& points) const;
   static Part part_of(const films::ComplexSurface& surface);
   static std::vector<char> carried_vertices(const films::FilmComplex& reference,
                                             Part part);
@@ -92,6 +95,8 @@ class Carry {
   Extension films_;
   Extension caps_;
   Extension wetted_;  // after both
+  // Of its vertices those on bent walls, where they go to the nearest point.
+  std::vector<std::pair<int, films::BentWall>> on_bent_;
 };
 
 }  // namespace meniscus::frozen

@@ -20,17 +20,17 @@ double entry(const VectorX& values, Eigen::Index at) {
 
 FilmAdjoint::FilmAdjoint(const energy::FilmEnergy& energy,
                          const films::FilmTargets& targets, const Points& base,
-                         const Points& directions, const Points& points,
+                         const energy::FilmPaths& paths, const Points& points,
                          const VectorX& heights, const VectorX& pressure)
     : energy_(energy),
       targets_(targets),
       base_(base),
-      directions_(directions),
+      paths_(paths),
       points_(points),
       heights_(heights),
       pressure_(pressure),
       products_(energy, targets, pressure),
-      saddle_(energy, targets, points, directions, pressure),
+      saddle_(energy, targets, points, paths, pressure),
       energy_slope_(energy.gradient(points, targets)),
       slope_(energy_slope_) {
   if (!saddle_.factored()) {
@@ -56,6 +56,23 @@ Points FilmAdjoint::direct(const FilmCovector& response) const {
   return sum;
 }
 
+/// What the response knows of a bent path by X + h n.
+Vec3 FilmAdjoint::by_place_of(const energy::FilmPaths::Bent& path,
+                              const FilmCovector& response) {
+  const auto i = static_cast<std::size_t>(path.unknown);
+  Vec3 sum = Vec3::Zero();
+  if (!response.directions.empty()) {
+    sum += path.onto.bend_along(path.direction).transpose() *
+           response.directions[i];
+  }
+  if (!response.bends.empty()) {
+    sum +=
+        films::bend_slope(path.wall, path.place, path.direction).transpose() *
+        response.bends[i];
+  }
+  return sum;
+}
+
 FilmAdjoint::Result FilmAdjoint::transpose(const FilmCovector& response) const {
   Result result;
   // g: what the response knows by the vertices; areas, volumes and the energy
@@ -69,14 +86,21 @@ FilmAdjoint::Result FilmAdjoint::transpose(const FilmCovector& response) const {
     by_pressure[static_cast<Eigen::Index>(k)] =
         entry(response.pressures, held[k]);
   }
+  // On bent walls dx/dh and d2x/dh2 change with the place X + h n.
+  VectorX slope = energy_.along(result.base, paths_.first);
+  std::vector<Vec3> by_place;
+  for (const energy::FilmPaths::Bent& path : paths_.bent) {
+    by_place.push_back(by_place_of(path, response));
+    slope[path.unknown] += by_place.back().dot(path.direction);
+  }
   const energy::ConstrainedHessian::Step step =
-      saddle_.solve(energy_.along(result.base, directions_), by_pressure);
+      saddle_.solve(slope, by_pressure);
   const VectorX& mu = step.dh;
   // G = g + (E_xx - sum p V_xx) d + sum nu V_x with d = sum mu n: the
   // derivative by the film's base at fixed directions.
   Points motion(points_.size(), Vec3::Zero());  // sum mu n
   for (int i = 0; i < energy_.unknowns(); ++i) {
-    motion[energy_.vertices()[i]] += mu[i] * directions_[i];
+    motion[energy_.vertices()[i]] += mu[i] * paths_.first[i];
   }
   add(1.0, products_.hessian_times(points_, motion), result.base);
   result.volumes = VectorX::Zero(energy_.functionals());
@@ -104,11 +128,27 @@ FilmAdjoint::Result FilmAdjoint::transpose(const FilmCovector& response) const {
   }
   // N_i = h_i G_i + mu_i (E_x - sum p V_x)_i by the directions, carried on to
   // the base points that make them.
-  Points by_directions = response.directions;
-  by_directions.resize(directions_.size(), Vec3::Zero());
+  Points by_first = response.directions;  // by dx/dh
+  by_first.resize(paths_.first.size(), Vec3::Zero());
   for (int i = 0; i < energy_.unknowns(); ++i) {
-    const int v = energy_.vertices()[i];
-    by_directions[i] += heights_[i] * result.base[v] + mu[i] * slope_[v];
+    by_first[i] += mu[i] * slope_[energy_.vertices()[i]];
+  }
+  // On bent walls x = P(y), y = X + h n: back through P, P' n and P'' n n.
+  for (std::size_t k = 0; k < paths_.bent.size(); ++k) {
+    const energy::FilmPaths::Bent& path = paths_.bent[k];
+    const int i = path.unknown;
+    const Eigen::Matrix3d bend = path.onto.bend_along(path.direction);
+    Vec3& by = result.base[path.vertex];
+    by = path.onto.slope.transpose() * by +
+         mu[i] * bend.transpose() * slope_[path.vertex] + by_place[k];
+    by_first[i] = path.onto.slope.transpose() * by_first[i];
+    if (!response.bends.empty()) {
+      by_first[i] += 2.0 * bend.transpose() * response.bends[i];
+    }
+  }
+  Points by_directions = by_first;
+  for (int i = 0; i < energy_.unknowns(); ++i) {
+    by_directions[i] += heights_[i] * result.base[energy_.vertices()[i]];
   }
   energy_.space().transpose_directions(base_, by_directions, result.base);
   return result;
@@ -119,6 +159,13 @@ Points FilmAdjoint::tangent(const Rates& rates) const {
   Points motion = rates.base;  // at fixed heights
   for (int i = 0; i < energy_.unknowns(); ++i) {
     motion[energy_.vertices()[i]] += heights_[i] * turning[i];
+  }
+  Points turned = turning;  // dx/dh
+  for (const energy::FilmPaths::Bent& path : paths_.bent) {
+    Vec3& move = motion[path.vertex];
+    Vec3& turn = turned[path.unknown];
+    turn = path.onto.slope * turn + path.onto.bend_along(path.direction) * move;
+    move = path.onto.slope * move;
   }
   Points slope_rate = products_.hessian_times(points_, motion);
   VectorX tensions = rates.tensions;
@@ -140,14 +187,14 @@ Points FilmAdjoint::tangent(const Rates& rates) const {
       add(-rates.pressures[b], saddle_.functional_slopes()[b], slope_rate);
     }
   }
-  VectorX residual = energy_.along(slope_rate, directions_);
+  VectorX residual = energy_.along(slope_rate, paths_.first);
   for (int i = 0; i < energy_.unknowns(); ++i) {
-    residual[i] += turning[i].dot(slope_[energy_.vertices()[i]]);
+    residual[i] += turned[i].dot(slope_[energy_.vertices()[i]]);
   }
   const energy::ConstrainedHessian::Step step =
       saddle_.solve(residual, missing);
   for (int i = 0; i < energy_.unknowns(); ++i) {
-    motion[energy_.vertices()[i]] += step.dh[i] * directions_[i];
+    motion[energy_.vertices()[i]] += step.dh[i] * paths_.first[i];
   }
   return motion;
 }

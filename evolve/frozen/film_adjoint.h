@@ -15,12 +15,12 @@ namespace meniscus::frozen {
 /// A film at rest, factored once for any number of responses.
 class FilmAdjoint {
  public:
-  /// `base`, `directions`: X and n(X); `points`: the film at `heights`, at
-  /// rest under `pressure` (one per functional). References must outlive
+  /// `base`, `paths`: X and x(h) along n(X); `points`: the film at `heights`,
+  /// at rest under `pressure` (one per functional). References must outlive
   /// this. Throws SolverError for a Hessian that is not finite.
   FilmAdjoint(const energy::FilmEnergy& energy,
               const films::FilmTargets& targets, const Points& base,
-              const Points& directions, const Points& points,
+              const energy::FilmPaths& paths, const Points& points,
               const VectorX& heights, const VectorX& pressure);
 
   struct Result {
@@ -45,11 +45,13 @@ class FilmAdjoint {
 
  private:
   Points direct(const FilmCovector& response) const;
+  static Vec3 by_place_of(const energy::FilmPaths::Bent& path,
+                          const FilmCovector& response);
 
   const energy::FilmEnergy& energy_;
   const films::FilmTargets& targets_;
   const Points& base_;
-  const Points& directions_;
+  const energy::FilmPaths& paths_;
   const Points& points_;
   const VectorX& heights_;
   const VectorX& pressure_;

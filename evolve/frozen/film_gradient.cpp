@@ -59,6 +59,8 @@ void FilmModel::Impl::check_response(const FilmCovector& response) const {
   check_size("tensions", size(response.tensions), complex.surfaces.size());
   check_size("directions", response.directions.size(),
              static_cast<std::size_t>(energy->unknowns()));
+  check_size("bends", response.bends.size(),
+             static_cast<std::size_t>(energy->unknowns()));
 }
 
 FilmModel::Impl::AtRest FilmModel::Impl::at_rest(
@@ -81,6 +83,7 @@ FilmModel::Impl::AtRest FilmModel::Impl::at_rest(
     film.pressure[b] =
         state.report.bodies[static_cast<std::size_t>(b)].pressure;
   }
+  film.paths = energy->space().paths(film.base, film.directions, state.heights);
   Points there =
       energy->space().moved(film.base, film.directions, state.heights);
   carry->follow(there);
@@ -120,13 +123,12 @@ std::vector<FilmGradient> FilmModel::transpose(
   if (impl_->energy->unknowns() == 0) {
     return impl_->rigid_gradients(responses);
   }
-  const FilmAdjoint adjoint(*impl_->energy, film.targets, film.base,
-                            film.directions, state.points, state.heights,
-                            film.pressure);
+  const FilmAdjoint adjoint(*impl_->energy, film.targets, film.base, film.paths,
+                            state.points, state.heights, film.pressure);
   std::vector<FilmGradient> result;
   result.reserve(responses.size());
   for (FilmCovector response : responses) {
-    impl_->carry->fold_caps(response.points);
+    impl_->carry->fold_caps(state.points, response.points);
     const FilmAdjoint::Result found = adjoint.transpose(response);
     result.push_back({impl_->rim_gradients(found.base), found.tensions,
                       found.volumes, found.pressures});
@@ -146,12 +148,11 @@ std::vector<Points> FilmModel::tangents(
     }
     return result;
   }
-  const FilmAdjoint adjoint(*impl_->energy, film.targets, film.base,
-                            film.directions, state.points, state.heights,
-                            film.pressure);
+  const FilmAdjoint adjoint(*impl_->energy, film.targets, film.base, film.paths,
+                            state.points, state.heights, film.pressure);
   for (const films::FilmSystem& moving : rates) {
     result.push_back(adjoint.tangent(impl_->rates_of(system, moving)));
-    impl_->carry->follow_rates(result.back());
+    impl_->carry->follow_rates(state.points, result.back());
   }
   return result;
 }
@@ -251,10 +252,9 @@ FilmResponse FilmModel::margin(const settle::FilmState& state,
                                const MarginOptions& options) const {
   const Impl::AtRest film = impl_->at_rest(state, system);
   const energy::SaddleSystem saddle(*impl_->energy, film.targets, state.points,
-                                    film.directions, film.pressure);
-  return film_margin(*impl_->energy, film.targets, state.points,
-                     film.directions, film.pressure, saddle,
-                     impl_->margin_scale, options);
+                                    film.paths, film.pressure);
+  return film_margin(*impl_->energy, film.targets, state.points, film.paths,
+                     film.pressure, saddle, impl_->margin_scale, options);
 }
 
 FilmResponse FilmModel::smallest_radius(const Points& points, int power) const {

@@ -18,7 +18,8 @@ struct FilmCovector {
   VectorX volumes;      // by the bodies' volumes, in the report's order
   VectorX areas;        // by the films' areas, one per label; caps do not count
   double energy = 0.0;  // by the report's energy
-  Points directions;    // by n, one per height (film margins have this)
+  Points directions;    // by dx/dh, one per height (film margins have this)
+  Points bends;         // by d2x/dh2, the same
   VectorX tensions;     // by the films' tensions themselves, one per label
 };
 

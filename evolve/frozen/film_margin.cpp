@@ -23,20 +23,25 @@ class EigenvalueSlope {
  public:
   EigenvalueSlope(const energy::FilmEnergy& energy,
                   const films::FilmTargets& targets, const Points& points,
-                  const Points& directions, const VectorX& pressure,
+                  const energy::FilmPaths& paths, const VectorX& pressure,
                   const energy::SaddleSystem& saddle)
       : energy_(energy),
         points_(points),
-        directions_(directions),
+        paths_(paths),
         saddle_(saddle),
-        products_(energy, targets, pressure) {}
+        products_(energy, targets, pressure),
+        slope_(energy.gradient(points, targets)) {
+    for (int b = 0; b < energy.functionals(); ++b) {
+      flat(slope_) -= pressure[b] * flat(saddle.functional_slopes()[b]);
+    }
+  }
 
   /// Adds `weight` of them to `by`, whose lists have their sizes.
   void add(double lambda, const VectorX& v, double weight,
            FilmCovector& by) const {
     Points motion(points_.size(), Vec3::Zero());
     for (int i = 0; i < energy_.unknowns(); ++i) {
-      motion[energy_.vertices()[i]] += v[i] * directions_[i];
+      motion[energy_.vertices()[i]] += v[i] * paths_.first[i];
     }
     const VectorX kappa = multipliers(lambda, v);
     // H v less what holds the volumes, in all directions.
@@ -59,9 +64,29 @@ class EigenvalueSlope {
       by.directions[i] += 2.0 * weight * v[i] * pull[energy_.vertices()[i]];
     }
     by.tensions += weight * products_.area_curvatures(points_, motion);
+    add_bends(v, weight, by);
   }
 
  private:
+  /// Of v' H v what bent walls add, sum v_i^2 L_x . d2x/dh2.
+  void add_bends(const VectorX& v, double weight, FilmCovector& by) const {
+    Points bend(points_.size(), Vec3::Zero());
+    for (const energy::FilmPaths::Bent& path : paths_.bent) {
+      const double square = v[path.unknown] * v[path.unknown];
+      bend[path.vertex] += square * paths_.second[path.unknown];
+      by.bends[path.unknown] += weight * square * slope_[path.vertex];
+    }
+    if (paths_.bent.empty()) {
+      return;
+    }
+    flat(by.points) += weight * flat(products_.hessian_times(points_, bend));
+    for (int b = 0; b < energy_.functionals(); ++b) {
+      by.pressures[b] -=
+          weight * flat(saddle_.functional_slopes()[b]).dot(flat(bend));
+    }
+    by.tensions += weight * products_.area_rates(points_, bend);
+  }
+
   /// kappa, one per functional: 0 where none is held.
   VectorX multipliers(double lambda, const VectorX& v) const {
     VectorX result = VectorX::Zero(energy_.functionals());
@@ -80,16 +105,17 @@ class EigenvalueSlope {
 
   const energy::FilmEnergy& energy_;
   const Points& points_;
-  const Points& directions_;
+  const energy::FilmPaths& paths_;
   const energy::SaddleSystem& saddle_;
   energy::FilmProducts products_;
+  Points slope_;  // dE/dx - sum p dV/dx
 };
 
 }  // namespace
 
 FilmResponse film_margin(const energy::FilmEnergy& energy,
                          const films::FilmTargets& targets,
-                         const Points& points, const Points& directions,
+                         const Points& points, const energy::FilmPaths& paths,
                          const VectorX& pressure,
                          const energy::SaddleSystem& saddle, double scale,
                          const MarginOptions& options) {
@@ -115,12 +141,12 @@ FilmResponse film_margin(const energy::FilmEnergy& energy,
   result.value = lambda[0] - std::log(weight.sum()) / s;
   weight /= weight.sum();
   result.by.points.assign(points.size(), Vec3::Zero());
-  result.by.directions.assign(directions.size(), Vec3::Zero());
+  result.by.directions.assign(paths.first.size(), Vec3::Zero());
+  result.by.bends.assign(paths.first.size(), Vec3::Zero());
   result.by.pressures = VectorX::Zero(energy.functionals());
   result.by.tensions =
       VectorX::Zero(static_cast<Eigen::Index>(targets.tension.size()));
-  const EigenvalueSlope slope(energy, targets, points, directions, pressure,
-                              saddle);
+  const EigenvalueSlope slope(energy, targets, points, paths, pressure, saddle);
   for (Eigen::Index j = 0; j < lambda.size() && weight[j] > kNoWeight; ++j) {
     slope.add(lambda[j], lowest.modes.col(j), weight[j], result.by);
   }

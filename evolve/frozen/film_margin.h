@@ -8,14 +8,14 @@
 
 namespace meniscus::frozen {
 
-/// Of the film at `points` along `directions`, in the metric of lumped area
+/// Of the film at `points` along `paths`, in the metric of lumped area
 /// [force/length^3]; `pressure` and `saddle` are of that film, `scale` > 0 an
 /// eigenvalue [force/length^3] that must not depend on the design. Throws
 /// InvalidInput for options out of range, energy::ModesNotFound for an unstable
 /// film and for modes that are not found.
 FilmResponse film_margin(const energy::FilmEnergy& energy,
                          const films::FilmTargets& targets,
-                         const Points& points, const Points& directions,
+                         const Points& points, const energy::FilmPaths& paths,
                          const VectorX& pressure,
                          const energy::SaddleSystem& saddle, double scale,
                          const MarginOptions& options);

@@ -161,8 +161,8 @@ films::FilmTargets FilmModel::Impl::targets_of_system(
 }
 
 /// The wall that a design gives to a wetted face: in the place that it has.
-const films::PlaneWall& FilmModel::Impl::wall_of(
-    const films::FilmSystem& system, int surface) const {
+const films::FilmWall& FilmModel::Impl::wall_of(const films::FilmSystem& system,
+                                                int surface) const {
   const films::ComplexSurface& face = complex.surfaces[surface];
   const auto cap = std::find_if(
       system.caps.begin(), system.caps.end(),
@@ -170,7 +170,7 @@ const films::PlaneWall& FilmModel::Impl::wall_of(
   const films::LevelSet& plane =
       complex.level_sets[complex.constraint_sets[face.constraints].front()];
   if (cap == system.caps.end() || !cap->wall ||
-      start::plane_formula(*cap->wall).text() != plane.formula.text()) {
+      start::formula_of(*cap->wall).text() != plane.formula.text()) {
     throw InvalidInput(fmt::format(
         "the design moves the wall of '{}'; its place belongs to the frozen "
         "model: freeze another one",
@@ -233,6 +233,12 @@ std::vector<char> FilmModel::Impl::straight() const {
   std::vector<char> result;
   for (const films::ComplexVertex& vertex : complex.vertices) {
     result.push_back(vertex.kind == films::VertexKind::InCap ? 1 : 0);
+  }
+  for (std::size_t f = 0; f < complex.mesh.facets.size(); ++f) {
+    const auto& wetted = complex.surfaces[complex.mesh.facet_label[f]].wetted;
+    for (const int v : complex.mesh.facets[f]) {
+      result[v] = wetted && wetted->bent ? 0 : result[v];
+    }
   }
   return result;
 }

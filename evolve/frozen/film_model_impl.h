@@ -35,12 +35,13 @@ struct FilmModel::Impl {
     films::FilmTargets targets;
     Points base;        // X
     Points directions;  // n(X)
-    VectorX pressure;   // one per functional
+    energy::FilmPaths paths;
+    VectorX pressure;  // one per functional
   };
 
   films::FilmTargets targets_of_system(const films::FilmSystem& system) const;
-  const films::PlaneWall& wall_of(const films::FilmSystem& system,
-                                  int surface) const;
+  const films::FilmWall& wall_of(const films::FilmSystem& system,
+                                 int surface) const;
   void check_fields(const films::FilmSystem& system) const;
   std::vector<curves::Curve> curves_of_system(
       const films::FilmSystem& system) const;

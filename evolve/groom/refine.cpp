@@ -18,7 +18,7 @@ struct EdgePlan {
   std::vector<int> mark;
   std::vector<int> middle;  // -1: stays whole
   std::vector<char> in_film;
-  std::vector<int> obstacle;  // constraint set of its films, or -1
+  std::vector<int> obstacle;  // constraint set of its surfaces, or -1
   std::vector<int> band;      // of its rings, or -1
   std::vector<int> face;      // of its solids, or -1
 };
@@ -107,6 +107,13 @@ films::PlacedVertex middle_of(const films::FilmComplex& complex,
     made.vertex.held = touches(va) && touches(vb);
     made.place = films::onto_walls(complex, plan.obstacle[e], made.vertex.held,
                                    made.place);
+  }
+  if (plan.in_film[e] == 0 && plan.obstacle[e] >= 0) {
+    for (const int level : complex.constraint_sets[plan.obstacle[e]]) {
+      if (const auto& bent = complex.level_sets[level].bent) {
+        made.place = films::onto_wall(*bent, made.place);  // a wetted face
+      }
+    }
   }
   if (plan.in_film[e] == 0) {
     const bool solid = va.kind == films::VertexKind::Fixed &&

@@ -207,7 +207,8 @@ energy::LowestMode lowest_mode_of(const energy::FilmEnergy& energy,
   const Points own(points.begin(),
                    points.begin() + energy.space().vertex_count());
   const Points directions = energy.space().directions(own);
-  const energy::SaddleSystem saddle(energy, targets, own, directions, pressure);
+  const energy::SaddleSystem saddle(energy, targets, own, {directions, {}, {}},
+                                    pressure);
   energy::LowestMode result;
   result.mode = VectorX::Ones(energy.unknowns());
   if (saddle.factored()) {

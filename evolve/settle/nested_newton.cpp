@@ -103,17 +103,17 @@ bool NestedNewton::volumes_hold(double tolerance) const {
 }
 
 bool NestedNewton::refresh() {
-  Points slope;
+  energy::WallBends walls;
   if (energy_.space().has_walls()) {
-    slope = slope_;
+    walls.gradient = slope_;
     for (int b = 0; b < energy_.functionals(); ++b) {
-      for (std::size_t v = 0; v < slope.size(); ++v) {
-        slope[v] -= pressure_[b] * functional_slope_[b][v];
+      for (std::size_t v = 0; v < slope_.size(); ++v) {
+        walls.gradient[v] -= pressure_[b] * functional_slope_[b][v];
       }
     }
   }
   std::vector<double> elements;
-  energy_.elements(points_, directions_, targets_, pressure_, slope, elements);
+  energy_.elements(points_, directions_, targets_, pressure_, walls, elements);
   // Held volumes and rigid motions leave modes that only the constraints
   // hold; the preconditioner gets them from the shift.
   const double tension = films::largest_tension(targets_);

@@ -54,17 +54,18 @@ void FilmNewton::evaluate() {
     now_.heights.setZero();
     directions_ = energy_.space().directions(base_);
   }
+  paths_ = energy_.space().paths(base_, directions_, now_.heights);
   gradient_ =
-      energy_.along(energy_.gradient(now_.points, targets_), directions_);
+      energy_.along(energy_.gradient(now_.points, targets_), paths_.first);
   volumes_dh_.resize(n, bodies);
   for (int b = 0; b < bodies; ++b) {
-    volumes_dh_.col(b) =
-        energy_.along(energy_.functional_gradient(now_.points, b), directions_);
+    volumes_dh_.col(b) = energy_.along(
+        energy_.functional_gradient(now_.points, b), paths_.first);
   }
   metric_ = energy_.lumped_area(now_.points);
   const auto held = static_cast<int>(held_.size());
   const Eigen::MatrixXd rigid =
-      energy_.rigid_motions(now_.points, directions_, metric_);
+      energy_.rigid_motions(now_.points, paths_.first, metric_);
   constraints_.resize(n, held + rigid.cols());
   for (int k = 0; k < held; ++k) {
     constraints_.col(k) = volumes_dh_.col(held_[k]);
@@ -123,10 +124,15 @@ double FilmNewton::merit(const Trial& trial, const VectorX& pressure,
   return sum + 0.5 * penalty * missing(trial.volume).squaredNorm();
 }
 
+void FilmNewton::compute_hessian() {
+  energy_.hessian(now_.points, paths_.first, targets_, pressure_, hessian_,
+                  paths_.second.empty() ? nullptr : &paths_.second);
+}
+
 /// Factors the Hessian, shifted until it is positive on the constraint space
 /// when a minimum is sought.
 bool FilmNewton::factorize() {
-  energy_.hessian(now_.points, directions_, targets_, pressure_, hessian_);
+  compute_hessian();
   double shift = options_.aim == NewtonAim::Minimum ? shift_ : 0.0;
   for (int attempt = 0; attempt < kMostShifts; ++attempt) {
     if (!system_.factorize(hessian_, metric_, shift, constraints_)) {
@@ -246,7 +252,7 @@ bool FilmNewton::advance() {
 /// One full step after the stop criterion, and the stability of the film.
 void FilmNewton::polish(NewtonResult& result) {
   shift_ = 0.0;
-  energy_.hessian(now_.points, directions_, targets_, pressure_, hessian_);
+  compute_hessian();
   if (!system_.factorize(hessian_, metric_, 0.0, constraints_)) {
     result.converged = false;
     result.reason = "the Hessian is singular";

@@ -62,6 +62,7 @@ class FilmNewton {
   double merit(const Trial& trial, const VectorX& pressure,
                double penalty) const;
   Trial trial_at(const VectorX& heights) const;
+  void compute_hessian();
   bool factorize();
   bool advance();
   bool search_down(const energy::ConstrainedHessian::Step& step,
@@ -79,6 +80,7 @@ class FilmNewton {
   SparseMatrix hessian_;
   Points base_;
   Points directions_;
+  energy::FilmPaths paths_;
   Trial now_;
   VectorX gradient_;             // dE/dh
   Eigen::MatrixXd volumes_dh_;   // dV/dh, one column per functional

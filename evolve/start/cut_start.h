@@ -1,4 +1,4 @@
-/// Planes of symmetry that cut curves (films::PlaneWall::cuts): what is left of
+/// Planes of symmetry that cut curves (films::FilmWall::cuts): what is left of
 /// a start that was built whole.
 #pragma once
 

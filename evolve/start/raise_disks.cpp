@@ -1,8 +1,10 @@
 #include "evolve/start/raise_disks.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <set>
 
 #include <Eigen/Geometry>
@@ -33,7 +35,9 @@ std::map<std::string, std::vector<Filling>> fillings_of(
       }
     }
     for (const films::CapSpec& cap : system.caps) {
-      if (cap.name == name && !cap.start && cap.solid < 0) {
+      // Films at several rims of a bent wall enclose something as they are.
+      const bool between = cap.wall && cap.wall->bent() && !cap.more.empty();
+      if (cap.name == name && !cap.start && cap.solid < 0 && !between) {
         result[cap.curve].push_back({name});
       }
     }
@@ -112,6 +116,25 @@ class Bulge {
   double width_ = 0.0;
 };
 
+/// What a face has on the side of its flat rim that the normal points to
+/// [length^3].
+double volume_beyond(const films::FilmComplex& complex,
+                     const std::string& surface, const Vec3& at,
+                     const Vec3& normal) {
+  const int label = complex.mesh.label_of(surface);
+  double sum = 0.0;
+  for (std::size_t f = 0; f < complex.mesh.facets.size(); ++f) {
+    if (complex.mesh.facet_label[f] == label) {
+      const Triangle& t = complex.mesh.facets[f];
+      const Points& p = complex.mesh.points;
+      const double area2 =
+          std::abs((p[t[1]] - p[t[0]]).cross(p[t[2]] - p[t[0]]).dot(normal));
+      sum += area2 / 6.0 * normal.dot(p[t[0]] + p[t[1]] + p[t[2]] - 3.0 * at);
+    }
+  }
+  return sum;
+}
+
 Points rim_of(const films::FilmComplex& complex, const std::string& curve) {
   Points rim;
   for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
@@ -135,8 +158,17 @@ std::vector<RaisedDisk> raise_disks(const films::FilmSystem& system,
       if (fillings.size() != 2) {
         continue;
       }
-      const Vec3 normal =
-          polygon_area_vector(rim_of(complex, curve)).normalized();
+      const Points rim = rim_of(complex, curve);
+      const Vec3 normal = polygon_area_vector(rim).normalized();
+      const Vec3 middle =
+          std::accumulate(rim.begin(), rim.end(), Vec3(Vec3::Zero())) /
+          static_cast<double>(rim.size());
+      double beneath = 0.0;  // of the wall of a face that its film wets
+      for (const films::CapSpec& cap : system.caps) {
+        if (cap.wall && cap.wall->bent() && cap.curve == curve) {
+          beneath = volume_beyond(complex, cap.name, middle, normal);
+        }
+      }
       const int films = (fillings[0].film ? 1 : 0) + (fillings[1].film ? 1 : 0);
       double side = 1.0;
       for (const Filling& filling : fillings) {
@@ -151,8 +183,11 @@ std::vector<RaisedDisk> raise_disks(const films::FilmSystem& system,
         double height = kUsualHeight * bulge.width();
         // Between rims of several heights there is volume below it already.
         if (body.volume && !filling.holed) {
-          height = std::min(*body.volume / films / bulge.volume(normal),
-                            kMostHeight * bulge.width());
+          height =
+              std::min((*body.volume / films + beneath) / bulge.volume(normal),
+                       kMostHeight * bulge.width());
+        } else {
+          height += beneath / bulge.volume(normal);
         }
         result.push_back(bulge.raise(label, side * height * normal, complex));
         side = -side;

@@ -391,6 +391,11 @@ class StartBuilder {
       add_ring(rims, label);
       return;
     }
+    if (cap.wall && cap.wall->bent()) {
+      add_filling(fill_wetted_face(cap, loops, edge_), rims, label,
+                  films::VertexKind::InCap);
+      return;
+    }
     for (std::size_t k = 0; k < loops.size(); ++k) {
       require_flat(loops[k], cap.name, system_.curves[rims[k].curve].name);
     }
@@ -511,7 +516,7 @@ class StartBuilder {
       }
       if (cap.start || cap.ruled || !cap.inner.empty()) {
         throw InvalidInput(fmt::format(
-            "solid '{}' has a wall; faces that films wet are flat disks",
+            "solid '{}' has a wall; faces that films wet have curves only",
             cap.name));
       }
       std::vector<std::vector<int>> rims;

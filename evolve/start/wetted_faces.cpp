@@ -1,8 +1,10 @@
 #include "evolve/start/wetted_faces.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <set>
 
 #include <Eigen/Geometry>
@@ -12,13 +14,15 @@
 #include "core/geometry/edge_key.h"
 #include "core/math/dense.h"
 #include "evolve/energy/film_space.h"
+#include "evolve/start/bent_fill.h"
 #include "evolve/start/face_loops.h"
 
 namespace meniscus::start {
 
 namespace {
 
-constexpr double kInPlane = 1e-9;  // of the rim's size
+constexpr double kInPlane = 1e-9;   // of the rim's size
+constexpr double kNearBent = 0.05;  // of the rim's size, where films begin
 
 Expression over_place(const std::string& text) {
   return Expression::parse(text, {"x", "y", "z"});
@@ -38,6 +42,109 @@ films::VectorField area_field(const Vec3& m, const Vec3& from, double factor) {
           part("({:.17g})*y-({:.17g})*x", v.x(), v.y(), rest.z())};
 }
 
+using Texts = std::array<std::string, 3>;
+
+/// x - c by its coordinates.
+Texts from_point(const Vec3& c) {
+  return {fmt::format("(x-({:.17g}))", c.x()),
+          fmt::format("(y-({:.17g}))", c.y()),
+          fmt::format("(z-({:.17g}))", c.z())};
+}
+
+std::string along(const Vec3& d, const Texts& r) {
+  return fmt::format("(({:.17g})*{}+({:.17g})*{}+({:.17g})*{})", d.x(), r[0],
+                     d.y(), r[1], d.z(), r[2]);
+}
+
+Texts crossed(const Vec3& d, const Texts& r) {
+  const auto part = [&](int j, int k) {
+    return fmt::format("(({:.17g})*{}-({:.17g})*{})", d[j], r[k], d[k], r[j]);
+  };
+  return {part(1, 2), part(2, 0), part(0, 1)};
+}
+
+/// scale x way + rest.
+films::VectorField field_of(const Texts& way, const std::string& scale,
+                            const Texts& rest) {
+  const auto part = [&](int k) {
+    return over_place(fmt::format("{}*{}+{}", scale, way[k], rest[k]));
+  };
+  return {part(0), part(1), part(2)};
+}
+
+/// factor u x (r - c) / (|r - c| (|r - c| + u . (r - c))): along a loop on a
+/// sphere about c the factor x the solid angle around u. Beside it
+/// rest x (r - c) / 6, twice the cone of a part in `rest` to the origin.
+films::VectorField angle_field(const Vec3& u, const Vec3& c, double factor,
+                               const Vec3& rest) {
+  const Texts r = from_point(c);
+  const std::string size =
+      fmt::format("sqrt(({0})^2+({1})^2+({2})^2)", r[0], r[1], r[2]);
+  const std::string scale =
+      fmt::format("({:.17g})/({}*({}+{}))", factor, size, size, along(u, r));
+  return field_of(crossed(u, r), scale, crossed(rest, r));
+}
+
+/// Around an axis d through c, with z along it and t the angle about it:
+/// (first z + third z^3) d x r - (q1 z + q2 z^2 + q3 z^3) dt, beside as above.
+struct AxisForm {
+  double moment = 0.0;  // of z d x r
+  std::array<double, 3> turn = {0.0, 0.0, 0.0};
+};
+films::VectorField axis_field(const films::BentWall& wall, const AxisForm& form,
+                              const Vec3& rest) {
+  const Texts r = from_point(wall.at);
+  const std::string z = along(wall.axis, r);
+  const std::string across =
+      fmt::format("(({0})^2+({1})^2+({2})^2-({3})^2)", r[0], r[1], r[2], z);
+  const std::string scale = fmt::format(
+      "(({:.17g})*{}-(({:.17g})*{}+({:.17g})*({})^2+({:.17g})*({})^3)/{})",
+      form.moment, z, form.turn[0], z, form.turn[1], z, form.turn[2], z,
+      across);
+  return field_of(crossed(wall.axis, r), scale, crossed(rest, r));
+}
+
+/// Along the rim of a face the integrals of its energy per area and of what it
+/// bounds with the films' cones to the origin.
+struct RimFields {
+  films::VectorField energy;   // in the direction of its facets
+  films::VectorField content;  // against it, as its body's films run
+};
+
+RimFields rim_fields(const films::WettedWall& face, double tension,
+                     const std::vector<Points>& rims) {
+  const films::BentWall& wall = *face.bent;
+  const double r = wall.radius;
+  const Vec3 none = Vec3::Zero();
+  // Cones to a point p of the wall's own, and p . F / 3 for the area vector F
+  // of the rim's polygon.
+  const Vec3 rest = -wall.at / 6.0;
+  switch (wall.kind) {
+    case films::WallKind::Sphere: {
+      const Vec3 pole = pole_of_face(wall, rims, face.side);
+      return {angle_field(pole, wall.at, face.side * tension * r * r, none),
+              angle_field(pole, wall.at, -r * r * r / 3.0, rest)};
+    }
+    case films::WallKind::Cone: {
+      const double t = std::tan(wall.half_angle);
+      const double c = std::cos(wall.half_angle);
+      return {
+          axis_field(wall,
+                     {.turn = {0.0, face.side * tension * 0.5 * t / c, 0.0}},
+                     none),
+          axis_field(wall,
+                     {.moment = -1.0 / 6.0, .turn = {0.0, 0.0, -t * t / 6.0}},
+                     rest)};
+    }
+    default:
+      return {
+          axis_field(wall, {.turn = {face.side * tension * r, 0.0, 0.0}}, none),
+          axis_field(wall,
+                     {.moment = -1.0 / 6.0, .turn = {-0.5 * r * r, 0.0, 0.0}},
+                     rest)};
+  }
+}
+
 Vec3 unit_normal(const films::CapSpec& cap) {
   const double length = cap.wall->normal.norm();
   if (!(length > 0.0) || !std::isfinite(length) || !cap.wall->at.allFinite()) {
@@ -47,26 +154,79 @@ Vec3 unit_normal(const films::CapSpec& cap) {
   return cap.wall->normal / length;
 }
 
-/// Puts a rim onto the wall that it lies on but for rounding.
+void require_size(const films::CapSpec& cap) {
+  const films::FilmWall& wall = *cap.wall;
+  const bool round = wall.kind == films::WallKind::Cylinder ||
+                     wall.kind == films::WallKind::Sphere;
+  if (round && !(wall.radius > 0.0 && std::isfinite(wall.radius))) {
+    throw InvalidInput(
+        fmt::format("the wall of '{}' needs a radius above 0, found {}",
+                    cap.name, wall.radius));
+  }
+  if (wall.kind == films::WallKind::Cone &&
+      !(wall.half_angle > 0.0 && wall.half_angle < 0.5 * EIGEN_PI)) {
+    throw InvalidInput(fmt::format(
+        "the cone of '{}' needs a half angle above 0 and below 90 deg, found "
+        "{} rad",
+        cap.name, wall.half_angle));
+  }
+}
+
+/// How far a place is off the wall.
+double off_wall(const films::CapSpec& cap, const Vec3& place) {
+  if (const auto bent = cap.wall->bent()) {
+    return films::distance_outside(*bent, place);
+  }
+  return unit_normal(cap).dot(place - cap.wall->at);
+}
+
+/// Puts a rim onto the wall that it lies on but for rounding, or near which it
+/// lies, of bent ones.
 void require_on_wall(const films::CapSpec& cap, const std::string& curve,
                      const std::vector<int>& rim, Points& points) {
-  const Vec3 n = unit_normal(cap);
   Points loop;
   loop.reserve(rim.size());
   for (const int v : rim) {
     loop.push_back(points[v]);
   }
-  const double reach = kInPlane * bounding_diagonal(loop);
+  const bool plane = cap.wall->kind == films::WallKind::Plane;
+  const double reach = (plane ? kInPlane : kNearBent) * bounding_diagonal(loop);
   for (const int v : rim) {
-    const double off = n.dot(points[v] - cap.wall->at);
+    const double off = off_wall(cap, points[v]);
     if (!(std::abs(off) <= reach)) {
       throw InvalidInput(fmt::format(
           "curve '{}' is {:.3g} off the wall of '{}' at ({:.6g}, {:.6g}, "
-          "{:.6g}); films that slide on it begin on curves in its plane",
+          "{:.6g}); films that slide on it begin on curves that lie on it",
           curve, off, cap.name, points[v].x(), points[v].y(), points[v].z()));
     }
-    points[v] -= off * n;
+    if (const auto bent = cap.wall->bent()) {
+      points[v] = films::onto_wall(*bent, points[v]);
+    } else {
+      points[v] -= off * unit_normal(cap);
+    }
   }
+}
+
+/// The flux of a bent wall's outward normal through its facets, above 0 where
+/// they agree.
+double outward_area(const SurfaceMesh& mesh, int label,
+                    const films::BentWall& wall) {
+  double sum = 0.0;
+  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+    if (mesh.facet_label[f] == label) {
+      const Triangle& t = mesh.facets[f];
+      const Vec3& a = mesh.points[t[0]];
+      const Vec3 middle = (a + mesh.points[t[1]] + mesh.points[t[2]]) / 3.0;
+      const double size = 1e-3 * (mesh.points[t[1]] - a).norm();
+      const Vec3 area =
+          0.5 * (mesh.points[t[1]] - a).cross(mesh.points[t[2]] - a);
+      const Vec3 step = size * area.normalized();
+      sum += (films::distance_outside(wall, middle + step) -
+              films::distance_outside(wall, middle)) /
+             size * area.norm();
+    }
+  }
+  return sum;
 }
 
 Vec3 area_vector(const SurfaceMesh& mesh, int label) {
@@ -108,7 +268,7 @@ FacePlane plane_of(const films::FilmComplex& complex,
       complex.level_sets[complex.constraint_sets[face.constraints].front()];
   const double value = energy::value_at(level.formula, Vec3::Zero());
   const Vec3 n = energy::jet_at(level.formula, Vec3::Zero()).gradient;
-  return {-value / n.squaredNorm() * n, *face.wetted, face.constraints};
+  return {-value / n.squaredNorm() * n, face.wetted->normal, face.constraints};
 }
 
 /// Marked edges by their ends, of those that lie in a constraint set's walls.
@@ -172,6 +332,38 @@ std::map<int, int> boundary_of(const films::FilmComplex& complex, int surface) {
   return next;
 }
 
+/// The loops that a boundary runs around.
+std::vector<std::vector<int>> closed_loops(std::map<int, int> next,
+                                           const std::string& face) {
+  std::vector<std::vector<int>> loops;
+  while (!next.empty()) {
+    std::vector<int>& loop = loops.emplace_back();
+    for (auto at = next.begin(); at != next.end();) {
+      loop.push_back(at->first);
+      const int to = at->second;
+      next.erase(at);
+      at = next.find(to);
+      if (at == next.end() && to != loop.front()) {
+        throw InvalidInput(
+            fmt::format("the rim of '{}' on its wall is not closed", face));
+      }
+    }
+  }
+  return loops;
+}
+
+std::vector<Points> places_of(const std::vector<std::vector<int>>& loops,
+                              const Points& points) {
+  std::vector<Points> result;
+  for (const std::vector<int>& loop : loops) {
+    Points& places = result.emplace_back();
+    for (const int v : loop) {
+      places.push_back(points[v]);
+    }
+  }
+  return result;
+}
+
 /// Where line integrals begin: on the planes of all faces that meet this one
 /// along a seam, which then add nothing to them.
 Vec3 middle_of(const films::FilmComplex& complex,
@@ -205,10 +397,47 @@ Vec3 middle_of(const films::FilmComplex& complex,
   return middle;
 }
 
+/// Triangles on the bent wall between loops, in their direction.
+SurfaceMesh filling_of(const films::BentWall& wall, const std::string& face,
+                       const std::vector<Points>& loops, double side,
+                       double edge) {
+  try {
+    return fill_bent_face(wall, loops, side, edge);
+  } catch (const MeshError& error) {
+    throw InvalidInput(
+        fmt::format("the rim of '{}' on its wall: {}", face, error.what()));
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(fmt::format("'{}': {}", face, error.what()));
+  }
+}
+
+/// New vertices come last.
+void fill_on_wall(const std::vector<std::vector<int>>& loops, double edge,
+                  int label, films::FilmComplex& complex) {
+  const films::ComplexSurface& face = complex.surfaces[label];
+  SurfaceMesh& mesh = complex.mesh;
+  const SurfaceMesh filling =
+      filling_of(*face.wetted->bent, face.name, places_of(loops, mesh.points),
+                 face.wetted->side, edge);
+  std::vector<int> ids;
+  for (const std::vector<int>& loop : loops) {
+    ids.insert(ids.end(), loop.begin(), loop.end());
+  }
+  for (std::size_t i = ids.size(); i < filling.points.size(); ++i) {
+    ids.push_back(static_cast<int>(mesh.points.size()));
+    mesh.points.push_back(filling.points[i]);
+    complex.vertices.push_back({films::VertexKind::InCap});
+  }
+  for (const Triangle& t : filling.facets) {
+    mesh.facets.push_back({ids[t[0]], ids[t[1]], ids[t[2]]});
+    mesh.facet_label.push_back(label);
+  }
+}
+
 /// The level set of a cap's wall as a constraint set: planes that cut have one
 /// for all the faces in them.
 int wall_set(const films::CapSpec& cap, films::FilmComplex& complex) {
-  const Expression formula = plane_formula(*cap.wall);
+  const Expression formula = formula_of(*cap.wall);
   for (std::size_t s = 0; cap.wall->cuts && s < complex.constraint_sets.size();
        ++s) {
     const std::vector<int>& set = complex.constraint_sets[s];
@@ -219,13 +448,17 @@ int wall_set(const films::CapSpec& cap, films::FilmComplex& complex) {
   }
   complex.constraint_sets.push_back(
       {static_cast<int>(complex.level_sets.size())});
-  complex.level_sets.push_back({cap.name, formula});
+  complex.level_sets.push_back(
+      {.name = cap.name, .formula = formula, .bent = cap.wall->bent()});
   return static_cast<int>(complex.constraint_sets.size()) - 1;
 }
 
 }  // namespace
 
-Expression plane_formula(const films::PlaneWall& wall) {
+Expression formula_of(const films::FilmWall& wall) {
+  if (const auto bent = wall.bent()) {
+    return films::wall_formula(*bent);
+  }
   const Vec3 n = wall.normal.normalized();
   return over_place(fmt::format("({:.17g})*x+({:.17g})*y+({:.17g})*z-({:.17g})",
                                 n.x(), n.y(), n.z(), n.dot(wall.at)));
@@ -235,6 +468,7 @@ void slide_on_wall(const films::FilmSystem& system, const films::CapSpec& cap,
                    int label, const std::vector<std::vector<int>>& rims,
                    films::FilmComplex& complex) {
   Vec3 n = unit_normal(cap);
+  require_size(cap);
   const std::vector<std::string> curves = cap.curves();
   for (std::size_t k = 0; k < rims.size(); ++k) {
     require_one_film(system, cap, curves[k]);
@@ -245,7 +479,12 @@ void slide_on_wall(const films::FilmSystem& system, const films::CapSpec& cap,
   }
   const int set = wall_set(cap, complex);
   films::ComplexSurface& face = complex.surfaces[label];
-  face.wetted = n;
+  face.wetted = films::WettedWall{.normal = n, .bent = cap.wall->bent()};
+  if (face.wetted->bent) {
+    face.wetted->side =
+        outward_area(complex.mesh, label, *face.wetted->bent) < 0.0 ? -1.0
+                                                                    : 1.0;
+  }
   face.tension = cap.wall->tension;
   face.constraints = set;
   for (const Edge& run : open_runs(complex.mesh, label)) {
@@ -261,6 +500,18 @@ void slide_on_wall(const films::FilmSystem& system, const films::CapSpec& cap,
                              .constraints = set};
     }
   }
+}
+
+SurfaceMesh fill_wetted_face(const films::CapSpec& cap,
+                             std::vector<Points> rims, double edge) {
+  require_size(cap);
+  const std::vector<std::string> curves = cap.curves();
+  for (std::size_t k = 0; k < rims.size(); ++k) {
+    std::vector<int> all(rims[k].size());
+    std::iota(all.begin(), all.end(), 0);
+    require_on_wall(cap, curves[k], all, rims[k]);
+  }
+  return filling_of(*cap.wall->bent(), cap.name, rims, 0.0, edge);
 }
 
 bool has_wetted_faces(const films::FilmComplex& complex) {
@@ -298,16 +549,32 @@ films::FilmComplex open_wetted_faces(const films::FilmComplex& complex) {
     for (films::ComplexEdge& edge : result.edges) {
       if (edge.constraints == face.constraints) {
         edge.integrals = edges;
-        off = face.wetted->dot(mesh.points[edge.a]);
+        off = face.wetted->normal.dot(mesh.points[edge.a]);
       }
     }
-    const Vec3 from = middle_of(complex, face);
-    result.integrals.push_back(
-        {face.name + " energy", films::LineIntegral::Role::Energy,
-         area_field(*face.wetted, from, 0.5 * face.tension)});
+    RimFields fields;
+    if (face.wetted->bent) {
+      std::map<int, int> next;
+      for (const films::ComplexEdge& mark : complex.edges) {
+        if (mark.constraints == face.constraints) {
+          next[mark.a] = mark.b;
+        }
+      }
+      fields = rim_fields(
+          *face.wetted, face.tension,
+          places_of(closed_loops(next, face.name), complex.mesh.points));
+    } else {
+      const Vec3 from = middle_of(complex, face);
+      const Vec3& n = face.wetted->normal;
+      fields = {area_field(n, from, 0.5 * face.tension),
+                area_field(n, from, -off / 6.0)};
+    }
+    result.integrals.push_back({face.name + " energy",
+                                films::LineIntegral::Role::Energy,
+                                std::move(fields.energy)});
     result.integrals.push_back({face.name + " content",
                                 films::LineIntegral::Role::Content,
-                                area_field(*face.wetted, from, -off / 6.0)});
+                                std::move(fields.content)});
     result.integral_sets.push_back({first, first + 1});
   }
   return result;
@@ -316,7 +583,7 @@ films::FilmComplex open_wetted_faces(const films::FilmComplex& complex) {
 void close_wetted_faces(films::FilmComplex& complex, double edge) {
   std::vector<FacePlane> planes;
   for (const films::ComplexSurface& face : complex.surfaces) {
-    if (face.wetted &&
+    if (face.wetted && !face.wetted->bent &&
         std::none_of(planes.begin(), planes.end(), [&](const FacePlane& p) {
           return p.set == face.constraints;
         })) {
@@ -326,8 +593,11 @@ void close_wetted_faces(films::FilmComplex& complex, double edge) {
   FaceSeams seams(complex, planes, edge);
   for (std::size_t s = 0; s < complex.surfaces.size(); ++s) {
     const films::ComplexSurface& face = complex.surfaces[s];
-    if (face.wetted) {
-      const auto label = static_cast<int>(s);
+    const auto label = static_cast<int>(s);
+    if (face.wetted && face.wetted->bent) {
+      fill_on_wall(closed_loops(boundary_of(complex, label), face.name), edge,
+                   label, complex);
+    } else if (face.wetted) {
       fill_loops(seams.loops(plane_of(complex, face),
                              boundary_of(complex, label), face.name),
                  edge, false, label, complex);

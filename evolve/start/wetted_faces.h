@@ -1,4 +1,4 @@
-/// Faces that films wet on plane walls, whose rims slide there.
+/// Faces that films wet on walls, whose rims slide there.
 ///
 /// While a film is found its rims may go far, and grooming splits and collapses
 /// their edges. The faces behind them are then left out: what they add to the
@@ -14,13 +14,21 @@
 
 namespace meniscus::start {
 
-/// n . x - n . at of the wall's unit normal n [length], over x, y, z.
-Expression plane_formula(const films::PlaneWall& wall);
+/// 0 on the wall, of slope 1 there [length], over x, y, z: of a plane
+/// n . x - n . at with its unit normal n.
+Expression formula_of(const films::FilmWall& wall);
+
+/// The first facets of a bent wall's cap, its rims' points first, in order; of
+/// a loop on a sphere its smaller part. Throws InvalidInput for a wall without
+/// size, a curve that does not lie on it (which one, where), and for rims that
+/// bound nothing there.
+SurfaceMesh fill_wetted_face(const films::CapSpec& cap,
+                             std::vector<Points> rims, double edge);
 
 /// Lets the rims of a wall's cap slide on it. `label`: the cap's surface, whose
 /// facets are turned as they stay; `rims`: the vertices of each of its curves,
-/// in order. Throws InvalidInput for a wall without a normal, a curve that does
-/// not lie in it (which one, where) or does not hold one film there.
+/// in order. Throws InvalidInput for a wall without a normal or size, a curve
+/// that does not lie on it (which one, where) or does not hold one film there.
 void slide_on_wall(const films::FilmSystem& system, const films::CapSpec& cap,
                    int label, const std::vector<std::vector<int>>& rims,
                    films::FilmComplex& complex);

@@ -110,10 +110,12 @@ struct FilmEntry {
   SourceLine line = 0;
 };
 
-/// The plane wall of a face that films wet, and the angle that they meet it at,
-/// in the body.
+/// The wall of a face that films wet, and the angle that they meet it at, in the
+/// body.
 struct WettedWall {
-  QuantityVector at, normal;
+  films::WallKind kind = films::WallKind::Plane;
+  QuantityVector at, normal;  // of cylinder and cone the axis
+  std::optional<Quantity> radius, half_angle;
   Quantity contact_angle;  // [rad]
   bool cuts = false;       // a plane of symmetry that cuts curves of the body
 };

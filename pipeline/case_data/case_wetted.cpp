@@ -14,6 +14,7 @@ namespace {
 
 constexpr int kPlacesOnRim = 16;
 constexpr double kOnWall = 1e-9;       // of the curve's size
+constexpr double kNearWall = 0.05;     // of the same, of walls that are bent
 constexpr double kSameEnergy = 1e-12;  // of films of one tension, or at 90 deg
 
 /// The films that end at the curves of a wetted face; without those whose
@@ -69,35 +70,56 @@ Points places_on(const curves::Curve& curve) {
 }
 
 void check_on_wall(const Case& input, const CapEntry& cap,
-                   const films::PlaneWall& wall, const curves::Curve& curve,
+                   const films::FilmWall& wall, const curves::Curve& curve,
                    const CaseValues& values) {
   const Vec3 n = wall.normal.normalized();
   const Points places = places_on(curve);
-  const auto off = [&](const Vec3& p) { return std::abs(n.dot(p - wall.at)); };
+  const std::optional<films::BentWall> bent = wall.bent();
+  const auto off = [&](const Vec3& p) {
+    return std::abs(bent ? films::distance_outside(*bent, p)
+                         : n.dot(p - wall.at));
+  };
+  const double reach = (bent ? kNearWall : kOnWall) * bounding_diagonal(places);
   const auto worst = std::max_element(
       places.begin(), places.end(),
       [&](const Vec3& a, const Vec3& b) { return off(a) < off(b); });
-  if (!(off(*worst) <= kOnWall * bounding_diagonal(places))) {
+  if (!(off(*worst) <= reach)) {
     values.problems().push_back(fmt::format(
         "{}: curve '{}' is {:.4g} off the wall of '{}' at ({:.4g}, {:.4g}, "
-        "{:.4g}); expected one in its plane, where the film begins",
+        "{:.4g}); expected one {}, where the film begins",
         place(input, cap.line), curve.name, off(*worst), cap.spec.name,
-        worst->x(), worst->y(), worst->z()));
+        worst->x(), worst->y(), worst->z(),
+        bent ? fmt::format("within {:.4g} of it", reach) : "in its plane"));
   }
 }
 
 }  // namespace
 
-films::PlaneWall wall_of(const Case& input, const CapEntry& cap,
-                         const CaseValues& values) {
+films::FilmWall wall_of(const Case& input, const CapEntry& cap,
+                        const CaseValues& values) {
   const WettedWall& wetted = *cap.wetted;
-  films::PlaneWall wall{.at = values.at(wetted.at),
-                        .normal = values.at(wetted.normal),
-                        .cuts = wetted.cuts};
-  if (!values.are_rates() && !(wall.normal.norm() > 0.0)) {
-    values.problems().push_back(fmt::format(
-        "{}: solids.{}.normal is 0; expected a direction across the wall",
-        place(input, wetted.normal[0].line), cap.spec.name));
+  films::FilmWall wall{.at = values.at(wetted.at),
+                       .normal = values.at(wetted.normal),
+                       .cuts = wetted.cuts,
+                       .kind = wetted.kind};
+  if (wetted.kind == films::WallKind::Sphere) {
+    wall.normal = Vec3::UnitZ();
+  } else if (!values.are_rates() && !(wall.normal.norm() > 0.0)) {
+    const bool plane = wetted.kind == films::WallKind::Plane;
+    values.problems().push_back(
+        fmt::format("{}: solids.{}.{} is 0; expected a direction {} the wall",
+                    place(input, wetted.normal[0].line), cap.spec.name,
+                    plane ? "normal" : "axis", plane ? "across" : "along"));
+  }
+  if (wetted.radius) {
+    wall.radius = values.at(
+        *wetted.radius, [](double r) { return r > 0.0; }, "above 0");
+  }
+  if (wetted.half_angle) {
+    wall.half_angle = values.at(
+        *wetted.half_angle,
+        [](double a) { return a > 0.0 && a < 0.5 * std::numbers::pi; },
+        "above 0 and below 90 deg");
   }
   values.at(
       wetted.contact_angle,

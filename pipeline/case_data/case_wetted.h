@@ -1,4 +1,4 @@
-/// Faces that films wet on plane walls: solids of kind wetted.
+/// Faces that films wet on walls: solids of kind wetted.
 #pragma once
 
 #include "pipeline/case_data/case.h"
@@ -8,10 +8,11 @@ namespace meniscus::case_data {
 
 /// The wall of a wetted face and -T cos(contact angle), its energy per area, or
 /// the rate of that; what is wrong with them is told.
-films::PlaneWall wall_of(const Case& input, const CapEntry& cap,
+films::FilmWall wall_of(const Case& input, const CapEntry& cap,
                          const CaseValues& values);
 
-/// Tells of curves that do not lie in the wall on which their film slides.
+/// Tells of curves that do not lie on the wall on which their film slides, or,
+/// where it is bent, near it.
 void check_on_walls(const Case& input, const films::FilmSystem& system,
                     const CaseValues& values);
 

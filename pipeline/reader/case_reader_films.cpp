@@ -92,9 +92,11 @@ const std::vector<SolidRow>& solid_kinds() {
         {{"curve", "inner"}, {}},
         "band between two curves, flat where they lie in one plane"},
        {"wetted",
-        {{"curve", "at", "normal"}, {"holes", "contact_angle"}},
-        "the face that a body wets on a plane wall: the film that begins at "
-        "its curve ends there and slides"},
+        {{"curve", "at"},
+         {"wall", "normal", "axis", "radius", "half_angle", "holes",
+          "contact_angle"}},
+        "the face that a body wets on a wall: the film that begins at its "
+        "curve ends there and slides"},
        {"sides",
         {{"curves"}, {}},
         "the plane faces between the sides of two polygons"},
@@ -292,12 +294,71 @@ void read_rims(CaseContext& context, const CaseTable& table,
   }
 }
 
-/// Where films slide on a plane, which belongs to the frozen model.
+/// A kind of wall and the keys that say where it is.
+struct WallRow {
+  const char* name;
+  films::WallKind kind;
+  std::vector<const char*> keys;
+  std::string_view doc;
+};
+
+const std::vector<WallRow>& wall_kinds() {
+  static const std::vector<WallRow> kinds = {
+      {"plane",
+       films::WallKind::Plane,
+       {"normal"},
+       "across normal, through at"},
+      {"cylinder",
+       films::WallKind::Cylinder,
+       {"axis", "radius"},
+       "about axis, through at"},
+      {"sphere", films::WallKind::Sphere, {"radius"}, "about at"},
+      {"cone",
+       films::WallKind::Cone,
+       {"axis", "half_angle"},
+       "its apex at, opening along axis"}};
+  return kinds;
+}
+
+/// Says which of the keys of walls this one has to have, and has not to.
+void check_wall_keys(CaseContext& context, const CaseTable& table,
+                     const WallRow& row) {
+  for (const char* key : {"normal", "axis", "radius", "half_angle"}) {
+    const bool wanted =
+        std::find_if(row.keys.begin(), row.keys.end(), [&](const char* k) {
+          return std::string_view(k) == key;
+        }) != row.keys.end();
+    if (wanted != table.has(key)) {
+      context.problems.add(
+          wanted ? table.line() : table.line(key),
+          wanted ? fmt::format("{} has no '{}'; its wall is a {}, which needs "
+                               "{}",
+                               table.path(), key, row.name,
+                               fmt::join(row.keys, " and "))
+                 : fmt::format("{}.{} is of other walls than a {}, which has "
+                               "{}; leave it out",
+                               table.path(), key, row.name,
+                               fmt::join(row.keys, " and ")));
+    }
+  }
+}
+
+/// Where films slide on a wall, which belongs to the frozen model.
 case_data::WettedWall read_wetted(CaseContext& context,
                                   const CaseTable& table) {
+  const std::optional<std::string> kind = table.choice("wall");
+  const WallRow& row =
+      case_data::row_named(wall_kinds(), kind.value_or("plane"));
+  if (kind || !table.has("wall")) {
+    check_wall_keys(context, table, row);
+  }
+  const char* along = row.kind == films::WallKind::Plane ? "normal" : "axis";
   case_data::WettedWall wall{
+      .kind = row.kind,
       .at = table.vector_or_zero("at"),
-      .normal = table.vector_or_zero("normal"),
+      .normal = table.vector_or_zero(along),
+      .radius = table.quantity("radius"),
+      .half_angle = table.quantity("half_angle"),
       .contact_angle = table.quantity("contact_angle")
                            .value_or(case_data::Quantity{
                                .expression = Expression(kRightAngle),
@@ -306,6 +367,12 @@ case_data::WettedWall read_wetted(CaseContext& context,
   for (const case_data::QuantityVector& vector : {wall.at, wall.normal}) {
     for (const case_data::Quantity& quantity : vector) {
       require_frozen(context, quantity, "a wall's place");
+    }
+  }
+  for (const std::optional<case_data::Quantity>& size :
+       {wall.radius, wall.half_angle}) {
+    if (size) {
+      require_frozen(context, *size, "a wall's size");
     }
   }
   return wall;
@@ -386,8 +453,9 @@ TableSpec solid_table() {
       {{"kind", K::Choice, D::None, true, case_data::meanings_of(solid_kinds()),
         case_data::choices_of(solid_kinds()), "plate|pad|faces"},
        {"curve", K::Name, D::None, false,
-        "of cap, ring: its rim; of wetted: where the film begins, in the wall; "
-        "it holds nothing"},
+        "of cap, ring: its rim; of wetted: where the film begins, on the wall, "
+        "or within a twentieth of its size of one that is bent; it holds "
+        "nothing"},
        {"inner", K::Name, D::None, false, "of ring: the rim of its hole"},
        {"holes", K::Names, D::None, false,
         "of cap: curves in its plane that it leaves open; of wetted likewise, "
@@ -402,10 +470,19 @@ TableSpec solid_table() {
        {"within", K::Constant, D::Length, false, "of file: as of films"},
        {"at", K::Vector, D::Length, false,
         "of boss: the middle of its seat; of flange: of its top face; of lug: "
-        "of its bore; of block: its own; of wetted: a point of the wall, the "
-        "same for every design"},
+        "of its bore; of block: its own; of wetted: a point of the plane or of "
+        "a cylinder's axis, a sphere's center, a cone's apex; the same for "
+        "every design"},
+       {"wall", K::Choice, D::None, false,
+        "of wetted: " + case_data::meanings_of(wall_kinds()) +
+            "; plane when left out",
+        case_data::choices_of(wall_kinds())},
        {"normal", K::Vector, std::nullopt, false,
-        "of wetted: of the wall, either way, any length but 0; the same for "
+        "of wetted: of a plane wall, either way, any length but 0; the same "
+        "for "
+        "every design"},
+       {"half_angle", K::Quantity, D::Angle, false,
+        "of wetted: of a cone, between its axis and its lines; the same for "
         "every design"},
        {"contact_angle", K::Quantity, D::Angle, false,
         "of wetted: between film and wall, in the body, above 0 and below 180 "
@@ -414,7 +491,8 @@ TableSpec solid_table() {
        {"axis", K::Vector, std::nullopt, false,
         "of boss, flange: out of seat or top face; of lug: of its bore; of "
         "block: to its top, z when left out; of step: what it is turned about; "
-        "any length but 0"},
+        "of wetted: of a cylinder, or of a cone from its apex into it; any "
+        "length but 0"},
        {"rotate", K::Quantity, D::None, false,
         "of step: by so much, right-handed about axis through about"},
        {"about", K::Vector, D::Length, false,
@@ -427,7 +505,7 @@ TableSpec solid_table() {
         "of lug: direction from the bore to the foot, made normal to axis"},
        {"radius", K::Quantity, D::Length, false,
         "of boss: at the seat; of lug: of its round end; of flange: a round "
-        "one's"},
+        "one's; of wetted: of cylinder or sphere"},
        {"base_radius", K::Quantity, D::Length, false,
         "of boss: at the base; radius when left out"},
        {"height", K::Quantity, D::Length, false,

@@ -473,6 +473,7 @@ void multiply(ResponsePartials& partials, double factor) {
   film.areas *= factor;
   film.energy *= factor;
   multiply_all(film.directions, factor);
+  multiply_all(film.bends, factor);
   film.tensions *= factor;
 }
 

@@ -293,7 +293,7 @@ TEST_F(EvolverFe, AgreesOnAFilmThatSlides) {
   system.curves = {{"begin", curves::Circle{at, normal, 1.0}}};
   system.films = {{"dome", films::FilmKind::Disk, {"begin"}, 2.0}};
   system.caps = {{"floor", "begin"}};
-  system.caps[0].wall = films::PlaneWall{at, normal, -0.8};
+  system.caps[0].wall = films::FilmWall{at, normal, -0.8};
   system.bodies = {{"drop", {"floor", "dome"}, 2.0, {}}};
   const frozen::FilmModel model =
       frozen::FilmModel::freeze(system, {.edge = 0.3});
@@ -303,6 +303,41 @@ TEST_F(EvolverFe, AgreesOnAFilmThatSlides) {
   expect_near(measured.energy, model.reference().report.energy, "energy");
   expect_near(measured.area, model.reference().report.area, "area");
   expect_near(measured.volume, 2.0, "volume");
+}
+
+// Upon a ball, in a funnel: what is bent is an integral along the rim, too,
+// which the frozen film has by its facets. They differ as chords of it do.
+TEST_F(EvolverFe, AgreesOnFilmsThatSlideOnBentWalls) {
+  constexpr double kChords = 2e-3;
+  for (const films::WallKind kind :
+       {films::WallKind::Sphere, films::WallKind::Cone}) {
+    const bool ball = kind == films::WallKind::Sphere;
+    films::FilmSystem system;
+    const Vec3 at(0.3, 0.1, 0.2);
+    const Vec3 normal(0.3, -0.2, 1.0);
+    const Vec3 n = normal.normalized();
+    system.curves = {
+        {"begin", curves::Circle{at + (ball ? 1.6 : 0.8) * n, normal,
+                                 ball ? 1.2 : 0.8 * std::tan(0.7)}}};
+    system.films = {{"dome", films::FilmKind::Disk, {"begin"}, 2.0}};
+    system.caps = {{"floor", "begin"}};
+    system.caps[0].wall = films::FilmWall{.at = at,
+                                          .normal = normal,
+                                          .tension = -0.3,
+                                          .kind = kind,
+                                          .radius = 2.0,
+                                          .half_angle = 0.7};
+    system.bodies = {{"drop", {"floor", "dome"}, ball ? 2.0 : 0.9, {}}};
+    const frozen::FilmModel model =
+        frozen::FilmModel::freeze(system, {.edge = 0.1});
+    ASSERT_FALSE(model.reference().failure);
+    const Measured measured = measure(datafile::fe_text(
+        start::open_wetted_faces(model.complex_at(model.reference(), system))));
+    expect_near(measured.area, model.reference().report.area, "area");
+    EXPECT_NEAR(measured.energy / model.reference().report.energy, 1.0,
+                kChords);
+    EXPECT_NEAR(measured.volume / *system.bodies[0].volume, 1.0, kChords);
+  }
 }
 
 }  // namespace

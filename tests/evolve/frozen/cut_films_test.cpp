@@ -30,7 +30,7 @@ void cut(films::FilmSystem& system, int planes) {
   for (int p = 0; p < planes; ++p) {
     films::CapSpec face;
     face.name = "cut_" + std::to_string(p);
-    face.wall = films::PlaneWall{.normal = 2.0 * Vec3::Unit(p), .cuts = true};
+    face.wall = films::FilmWall{.normal = 2.0 * Vec3::Unit(p), .cuts = true};
     system.caps.push_back(face);
     system.bodies[0].enclosed_by.push_back(face.name);
     *system.bodies[0].volume /= 2.0;
@@ -239,7 +239,7 @@ TEST(CutFilms, AnEighthSlidesOnAThirdPlane) {
   constexpr double kFacets = 4e-3;  // edges of 0.2 on a radius of 1
   films::FilmSystem half = tube(4.0);
   half.curves[1] = {"high", curves::Circle{Vec3::Zero(), Vec3::UnitZ(), 1.0}};
-  half.caps[1].wall = films::PlaneWall{};
+  half.caps[1].wall = films::FilmWall{};
   half.bodies[0].volume = 1.8;
   films::FilmSystem eighth = half;
   cut(eighth, 2);
@@ -269,7 +269,7 @@ TEST(CutFilms, BodiesMayShareAFilmThatIsCut) {
     films::CapSpec face;
     face.name = body.name + "_cut";
     face.wall =
-        films::PlaneWall{.at = at, .normal = Vec3(1, -1, 0), .cuts = true};
+        films::FilmWall{.at = at, .normal = Vec3(1, -1, 0), .cuts = true};
     half.caps.push_back(face);
     body.enclosed_by.push_back(face.name);
     *body.volume /= 2.0;

@@ -191,12 +191,12 @@ TEST(FilmAdjoint, OfFilmsThatMeetAlongAFreeLine) {
   Film film;
   film.targets.bodies[0].volume = film.energy.volumes(film.x)[0];
   const settle::FilmState at_rest = rest(film, film.x);
-  const Points directions = film.energy.space().directions(film.x);
+  const energy::FilmPaths paths = film.energy.space().paths(
+      film.x, film.energy.space().directions(film.x), at_rest.heights);
   const VectorX pressure =
       VectorX::Constant(1, at_rest.report.bodies[0].pressure);
-  const frozen::FilmAdjoint adjoint(film.energy, film.targets, film.x,
-                                    directions, at_rest.points, at_rest.heights,
-                                    pressure);
+  const frozen::FilmAdjoint adjoint(film.energy, film.targets, film.x, paths,
+                                    at_rest.points, at_rest.heights, pressure);
   frozen::FilmCovector by;
   by.points = waves(film.x.size(), 6);
   by.pressures = VectorX::Constant(1, 0.8);
@@ -237,7 +237,7 @@ TEST(LowestModes, AreThoseOfTheDenseProblem) {
   const films::FilmTargets targets = energy::targets_of(complex);
   const Points& x = complex.mesh.points;
   const energy::SaddleSystem saddle(energy, targets, x,
-                                    energy.space().directions(x),
+                                    {energy.space().directions(x), {}, {}},
                                     VectorX::Constant(1, 0.5));
   ASSERT_TRUE(saddle.factored());
   ASSERT_EQ(saddle.system().index(), 0);

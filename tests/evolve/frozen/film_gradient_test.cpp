@@ -200,7 +200,7 @@ films::FilmSystem sliding(double p) {
       {"skin", films::FilmKind::Loft, {"ring", "begin"}, 1.0 + 0.3 * p}};
   system.caps = {{"lid", "ring"}, {"foot", "begin"}};
   system.caps[1].wall =
-      films::PlaneWall{.normal = slope, .tension = -0.2 + 0.3 * p};
+      films::FilmWall{.normal = slope, .tension = -0.2 + 0.3 * p};
   system.bodies = {{"part", {"skin", "lid", "foot"}, 2.9 + 0.2 * p, {}}};
   return system;
 }
@@ -223,9 +223,8 @@ films::FilmSystem quarter(double p) {
                  {"end", "bottom"},
                  {"cut_x", ""},
                  {"cut_y", ""}};
-  system.caps[4].wall = films::PlaneWall{.normal = Vec3(3, 1, 0), .cuts = true};
-  system.caps[5].wall =
-      films::PlaneWall{.normal = Vec3(-1, 3, 0), .cuts = true};
+  system.caps[4].wall = films::FilmWall{.normal = Vec3(3, 1, 0), .cuts = true};
+  system.caps[5].wall = films::FilmWall{.normal = Vec3(-1, 3, 0), .cuts = true};
   system.bodies = {{"part",
                     {"skin", "foot", "head", "bore", "end", "cut_x", "cut_y"},
                     0.72 + 0.1 * p,
@@ -254,21 +253,84 @@ TEST(FilmGradient, OfAFilmThatSlidesOnAPlane) {
   }
 }
 
+/// Tubes from a ring that moves to a wall that is no plane, across its axis or
+/// around it.
+films::FilmSystem sliding_on(films::WallKind kind, double p) {
+  films::FilmSystem system = sliding(p);
+  const Vec3 slope = Vec3(0.2, -0.1, 1.0).normalized();
+  films::FilmWall& wall = *system.caps[1].wall;
+  wall.kind = kind;
+  wall.radius = 3.0;
+  wall.half_angle = 1.2;
+  auto& begin = std::get<curves::Circle>(system.curves[1].shape);
+  if (kind == films::WallKind::Cone) {  // down from its apex, outside
+    wall.normal = -slope;
+    begin.center = -slope;
+    begin.radius = std::tan(wall.half_angle);
+    system.bodies[0].volume = 6.5 + 0.2 * p;
+  } else if (kind == films::WallKind::Sphere) {
+    wall.at = -std::sqrt(8.0) * slope;
+  } else {
+    // Where a tube about the slope's normal meets a cylinder across it.
+    wall.normal = slope.cross(Vec3::UnitX());
+    const Vec3 side = wall.normal.normalized();
+    const Vec3 other = slope.cross(side);
+    curves::Spline saddle;
+    for (int k = 0; k < 24; ++k) {
+      const double t = 2.0 * 3.141592653589793 * k / 24.0;
+      const double across = std::cos(t) / 3.0;
+      saddle.points.push_back(std::sin(t) * side +
+                              3.0 * std::sin(across) * other +
+                              3.0 * (std::cos(across) - 1.0) * slope);
+    }
+    wall.at = -3.0 * slope;
+    system.curves[1].shape = saddle;
+  }
+  return system;
+}
+
+TEST(FilmGradient, OfFilmsThatSlideOnBentWalls) {
+  for (const films::WallKind kind :
+       {films::WallKind::Sphere, films::WallKind::Cone,
+        films::WallKind::Cylinder}) {
+    const auto design = [kind](double p) { return sliding_on(kind, p); };
+    for (const int refinements : {0, 1}) {
+      const frozen::FilmModel model = frozen::FilmModel::freeze(
+          design(0), {.edge = 0.3, .refinements = refinements});
+      ASSERT_FALSE(model.reference().failure)
+          << model.reference().failure->message;
+      expect_exact(model, design, 0.2, 4e-3);
+      expect_exact(
+          model, design, 0.2, 4e-3,
+          [&](const settle::FilmState& film, const films::FilmSystem& system) {
+            return model.margin(film, system);
+          });
+    }
+  }
+}
+
 // The other way through the same system.
 TEST(FilmGradient, ForwardsOfAFilmThatSlidesIsItsTranspose) {
-  const frozen::FilmModel model =
-      frozen::FilmModel::freeze(sliding(0), {.edge = 0.3, .refinements = 1});
-  const films::FilmSystem system = sliding(0.2);
-  const settle::FilmState film = model.settle(system);
-  ASSERT_FALSE(film.failure);
-  const films::FilmSystem rates = rates_of(sliding);
-  frozen::FilmCovector by;
-  by.points = covector(model).points;
-  const double backwards =
-      model.rate(model.transpose(film, system, {by}).front(), system, rates);
-  const double forwards =
-      flat(by.points).dot(flat(model.tangents(film, system, {rates}).front()));
-  EXPECT_NEAR(forwards / backwards, 1.0, 1e-11);
+  for (const films::WallKind kind :
+       {films::WallKind::Plane, films::WallKind::Sphere, films::WallKind::Cone,
+        films::WallKind::Cylinder}) {
+    const auto design = [kind](double p) {
+      return kind == films::WallKind::Plane ? sliding(p) : sliding_on(kind, p);
+    };
+    const frozen::FilmModel model =
+        frozen::FilmModel::freeze(design(0), {.edge = 0.3, .refinements = 1});
+    const films::FilmSystem system = design(0.2);
+    const settle::FilmState film = model.settle(system);
+    ASSERT_FALSE(film.failure);
+    const films::FilmSystem rates = rates_of(design);
+    frozen::FilmCovector by;
+    by.points = covector(model).points;
+    const double backwards =
+        model.rate(model.transpose(film, system, {by}).front(), system, rates);
+    const double forwards = flat(by.points).dot(
+        flat(model.tangents(film, system, {rates}).front()));
+    EXPECT_NEAR(forwards / backwards, 1.0, 1e-11);
+  }
 }
 
 films::FilmSystem blown(double p) {

@@ -31,10 +31,9 @@ films::FilmSystem drop(double angle, const Vec3& normal = Vec3::UnitZ()) {
   system.curves = {{"begin", curves::Circle{Vec3(0.3, 0.1, 0.2), normal, 1.0}}};
   system.films = {{"dome", films::FilmKind::Disk, {"begin"}, kTension}};
   system.caps = {{"floor", "begin"}};
-  system.caps[0].wall =
-      films::PlaneWall{.at = Vec3(0.3, 0.1, 0.2),
-                       .normal = normal,
-                       .tension = -kTension * std::cos(angle)};
+  system.caps[0].wall = films::FilmWall{.at = Vec3(0.3, 0.1, 0.2),
+                                        .normal = normal,
+                                        .tension = -kTension * std::cos(angle)};
   system.bodies = {{"drop", {"floor", "dome"}, 2.0, {}}};
   return system;
 }
@@ -114,7 +113,7 @@ films::FilmSystem tube(bool half) {
   system.films = {{"skin", films::FilmKind::Loft, {"high", "low"}, 1.0}};
   system.caps = {{"lid", "high"}, {"foot", "low"}};
   if (half) {
-    system.caps[1].wall = films::PlaneWall{};
+    system.caps[1].wall = films::FilmWall{};
   }
   system.bodies = {
       {"part", {"skin", "lid", "foot"}, half ? 2.2 : 4.4, std::nullopt}};
@@ -301,8 +300,8 @@ films::FilmSystem quarter_of_tubes(double p) {
                  {"lid_x", "rim_x"},
                  {"cut_z", "begin_z"},
                  {"cut_x", "begin_x"}};
-  system.caps[2].wall = films::PlaneWall{.normal = Vec3::UnitZ()};
-  system.caps[3].wall = films::PlaneWall{.normal = Vec3::UnitX()};
+  system.caps[2].wall = films::FilmWall{.normal = Vec3::UnitZ()};
+  system.caps[3].wall = films::FilmWall{.normal = Vec3::UnitX()};
   system.bodies = {{"part",
                     {"along_z", "along_x", "lid_z", "lid_x", "cut_z", "cut_x"},
                     4.4 * (1.0 + 0.1 * p),

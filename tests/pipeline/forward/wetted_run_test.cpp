@@ -1,4 +1,4 @@
-// Parts whose films slide on planes are meshed, analysed and differentiated.
+// Parts whose films slide on walls are meshed, analysed and differentiated.
 #include <cmath>
 #include <numbers>
 
@@ -160,6 +160,64 @@ tension = 3.0
 
 TEST(WettedRuns, OfTwoFilmsOnOneFaceHaveExactGradients) {
   expect_exact(ring(), Eigen::Vector2d(1e2, 0.05));
+}
+
+/// The drop's wall and where the drop begins on it.
+std::string drop_on(const std::string& wall, const std::string& begin) {
+  return changed(changed(drop(), "at = [0, 0, 0]\nnormal = [0, 0, 1]\n", wall),
+                 "center = [0, 0, 0]\nnormal = [0, 0, 1]\nradius = 30", begin);
+}
+
+std::string drop_in_funnel() {
+  return drop_on(
+      "wall = \"cone\"\nat = [0, 0, -40]\naxis = [0, 0, 2]\n"
+      "half_angle = \"40 deg\"\n",
+      "center = [0, 0, -2]\nnormal = [0, 0, 1]\nradius = 32");
+}
+
+/// A film about a cone's axis: of the polar angle 40 deg + angle - 90 deg at
+/// the wall, a sphere of radius R there and R sin(polar) around.
+TEST(WettedRuns, OfADropInAFunnelAreASphericalCapOnIt) {
+  constexpr double kFacets = 0.01;
+  const case_data::Case input = case_of(drop_in_funnel());
+  const forward::ForwardModel model(input);
+  ASSERT_FALSE(model.failure()) << model.failure()->message;
+  for (const Eigen::Vector2d& design :
+       {Eigen::Vector2d(9e4, 1.2), Eigen::Vector2d(1.1e5, 1.5)}) {
+    const double half = 40.0 * kPi / 180.0;
+    const double polar = half + design[1] - 0.5 * kPi;
+    // Of a rim of radius 1: the cone less what is hollow, or and what bulges.
+    const double bend = 1.0 / std::sin(polar);
+    const double rise = std::tan(0.5 * polar);
+    const double unit =
+        kPi / 3.0 / std::tan(half) + kPi * rise * (3.0 + rise * rise) / 6.0;
+    const double rim = std::cbrt(design[0] / unit);
+    forward::EvaluationFields fields;
+    const forward::Evaluation at = model.evaluate(design, &fields);
+    ASSERT_FALSE(at.failure) << at.failure->message;
+    const double area = kPi * rim * rim * (1.0 + rise * rise);
+    const double wetted = kPi * rim * rim / std::sin(half);
+    EXPECT_NEAR(at.responses[0] / area, 1.0, kFacets);
+    EXPECT_NEAR(at.responses[1] / (3.0 * (area - std::cos(design[1]) * wetted)),
+                1.0, kFacets);
+    EXPECT_NEAR(at.responses[2] * rim * bend / 6.0, 1.0, kFacets);
+    // The boundary has flat facets on the cone.
+    EXPECT_NEAR(enclosed_volume(fields.boundary) / design[0], 1.0, 0.03);
+  }
+}
+
+TEST(WettedRuns, OnBentWallsHaveExactGradients) {
+  expect_exact(drop_in_funnel(), Eigen::Vector2d(5e3, 0.1));
+  // Upon a ball, and across a rod, from a circle that is near it.
+  expect_exact(drop_on("wall = \"sphere\"\nat = [0, 0, -60]\nradius = 60\n",
+                       "center = [0, 0, -9]\nnormal = [0, 0, 1]\n"
+                       "radius = 31.6"),
+               Eigen::Vector2d(5e3, 0.1));
+  expect_exact(drop_on("wall = \"cylinder\"\nat = [0, 0, -150]\n"
+                       "axis = [0, 1, 0]\nradius = 150\n",
+                       "center = [0, 0, -1.5]\nnormal = [0, 0, 1]\n"
+                       "radius = 30"),
+               Eigen::Vector2d(5e3, 0.1));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Solids of kind wetted: faces that films wet on plane walls.
+// Solids of kind wetted: faces that films wet on walls.
 #include <cmath>
 #include <numbers>
 
@@ -94,6 +94,65 @@ TEST(CaseWetted, MistakesAreToldWithTheirLines) {
                          "material = \"aluminium\"\n\n[solids.foot_pad]"),
                  "case.toml:28: walls.shell is of a film that slides on the "
                  "wall of 'foot_pad'");
+}
+
+/// The strut's foot on a wall of these keys, for the plane's normal.
+std::string on_wall(const std::string& keys) {
+  return changed(sliding(), "normal = [0, 0, 1]\ncontact", keys + "\ncontact");
+}
+
+TEST(CaseWetted, BentWallsHaveTheirPlaceAndSize) {
+  const auto wall_of = [](const std::string& keys, const std::string& at) {
+    const case_data::Case input =
+        case_of(changed(on_wall(keys), "at = [0, 0, 0]", "at = " + at));
+    return *case_data::evaluate(input, case_data::initial_design(input))
+                .film_system.caps[0]
+                .wall;
+  };
+  const films::FilmWall ball =
+      wall_of("wall = \"sphere\"\nradius = \"50 mm\"", "[0, 0, 43.30127]");
+  EXPECT_EQ(ball.kind, films::WallKind::Sphere);
+  EXPECT_DOUBLE_EQ(ball.radius, 50.0);
+  const films::FilmWall cone =
+      wall_of("wall = \"cone\"\naxis = [0, 0, -3]\nhalf_angle = \"80 deg\"",
+              "[0, 0, 4.4]");
+  EXPECT_EQ(cone.kind, films::WallKind::Cone);
+  EXPECT_NEAR(cone.half_angle, 4.0 * std::numbers::pi / 9.0, 1e-14);
+  EXPECT_NEAR((cone.bent()->axis - Vec3(0, 0, -1)).norm(), 0.0, 1e-15);
+  const films::FilmWall tube = wall_of(
+      "wall = \"cylinder\"\naxis = [1, 0, 0]\nradius = 300", "[0, 0, 300]");
+  EXPECT_EQ(tube.kind, films::WallKind::Cylinder);
+}
+
+TEST(CaseWetted, MistakesOfBentWallsAreToldWithTheirLines) {
+  expect_problem(on_wall("wall = \"ball\"\nradius = 50"), "case.toml:32: ");
+  expect_problem(on_wall("wall = \"sphere\""),
+                 "solids.foot_pad has no 'radius'; its wall is a sphere, which "
+                 "needs radius");
+  expect_problem(on_wall("wall = \"sphere\"\nradius = 50\naxis = [0, 0, 1]"),
+                 "case.toml:34: solids.foot_pad.axis is of other walls than a "
+                 "sphere, which has radius; leave it out");
+  expect_problem(on_wall("wall = \"cone\"\naxis = [0, 0, 1]"),
+                 "its wall is a cone, which needs axis and half_angle");
+  expect_problem(
+      on_wall("wall = \"cone\"\naxis = [0, 0, 0]\nhalf_angle = \"45 deg\""),
+      "case.toml:33: solids.foot_pad.axis is 0; expected a direction along the "
+      "wall");
+  for (const char* angle : {"0 deg", "90 deg", "-30 deg"}) {
+    expect_problem(on_wall(std::string("wall = \"cone\"\naxis = [0, 0, 1]\n"
+                                       "half_angle = \"") +
+                           angle + "\""),
+                   "case.toml:34: solids.foot_pad.half_angle is");
+  }
+  for (const char* radius : {"0", "-5"}) {
+    expect_problem(
+        on_wall(std::string("wall = \"sphere\"\nradius = ") + radius),
+        "case.toml:33: solids.foot_pad.radius is");
+  }
+  expect_problem(on_wall("wall = \"sphere\"\nradius = \"2 * foot\""),
+                 "case.toml:33: solids.foot_pad.radius depends on 'foot'");
+  expect_problem(on_wall("wall = \"sphere\"\nradius = 50"),
+                 "curve 'base' is 25 off the wall of 'foot_pad'");
 }
 
 TEST(CaseWetted, FilmsOnOneFaceNeedOneEnergyOfIt) {

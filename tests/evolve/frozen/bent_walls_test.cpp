@@ -1,0 +1,219 @@
+// Films that slide on cylinders, spheres and cones, by their closed forms.
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "core/geometry/surface_mesh.h"
+#include "evolve/frozen/film_model.h"
+#include "evolve/start/bent_fill.h"
+#include "evolve/start/wetted_faces.h"
+
+namespace meniscus::bent_walls_test {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kTension = 2.0;
+// Errors of flat facets fall with their square, by 4 a refinement.
+constexpr double kSecondOrder = 3.4;
+constexpr double kOnWall = 1e-13;  // of coordinates near 1
+
+double radians(double degrees) { return degrees * kPi / 180.0; }
+
+/// Of a sphere's part of a height.
+double cap_volume(double radius, double height) {
+  return kPi * height * height * (3.0 * radius - height) / 3.0;
+}
+
+/// A drop in its own frame: a system, its film's radius, the wetted area.
+struct Drop {
+  films::FilmSystem system;
+  double radius = 0.0;  // below 0: bent the other way
+  double wetted = 0.0;
+};
+
+const Vec3 kAxis = Vec3(0.3, -0.2, 1.0).normalized();
+const Vec3 kOrigin = Vec3(0.4, -0.3, 0.2);
+
+Vec3 on_axis(double z) { return kOrigin + z * kAxis; }
+
+/// `up`: which way along the axis the film bulges, by its curve's normal.
+films::FilmSystem on_wall(const films::FilmWall& wall, double angle, double z,
+                          double radius, double volume, double up) {
+  films::FilmSystem system;
+  system.curves = {{"begin", curves::Circle{on_axis(z), up * kAxis, radius}}};
+  system.films = {{"dome", films::FilmKind::Disk, {"begin"}, kTension}};
+  system.caps = {{"face", "begin"}};
+  system.caps[0].wall = wall;
+  system.caps[0].wall->tension = -kTension * std::cos(angle);
+  system.bodies = {{"drop", {"face", "dome"}, volume, {}}};
+  return system;
+}
+
+films::FilmWall wall_of(films::WallKind kind) {
+  return {.at = kOrigin,
+          .normal = 3.0 * kAxis,  // any length
+          .kind = kind,
+          .radius = 1.0,
+          .half_angle = radians(30.0)};
+}
+
+/// Upon a ball of radius 1: the angle between film and wall at their line, with
+/// the centers c apart, is that of a triangle 1, r, c.
+Drop on_ball(double angle, double r) {
+  const double c = std::sqrt(1.0 + r * r - 2.0 * r * std::cos(angle));
+  const double z = 0.5 * (1.0 + c * c - r * r) / c;
+  const double volume = cap_volume(r, c + r - z) - cap_volume(1.0, 1.0 - z);
+  // It begins on a smaller circle.
+  const double begin = 0.5 * (1.0 + z);
+  return {on_wall(wall_of(films::WallKind::Sphere), angle, begin,
+                  std::sqrt(1.0 - begin * begin), volume, 1.0),
+          r, 2.0 * kPi * (1.0 - z)};
+}
+
+/// In a bowl, whose film is a sphere about a place beyond the bowl's center.
+Drop in_bowl(double angle, double r) {
+  const double c = std::sqrt(1.0 + r * r + 2.0 * r * std::cos(angle));
+  const double z = 0.5 * (1.0 + c * c - r * r) / c;
+  const double volume = cap_volume(1.0, 1.0 - z) + cap_volume(r, z - (c - r));
+  const double begin = 0.5 * (1.0 + z);
+  return {on_wall(wall_of(films::WallKind::Sphere), angle, begin,
+                  std::sqrt(1.0 - begin * begin), volume, -1.0),
+          r, 2.0 * kPi * (1.0 - z)};
+}
+
+/// In a funnel: the film's polar angle at the wall is 30 deg + angle - 90 deg.
+Drop in_funnel(double angle) {
+  const double a = radians(30.0);
+  const double polar = a + angle - 0.5 * kPi;
+  const double out = std::tan(a);  // at z = 1
+  const double r = out / std::sin(polar);
+  const double cap =
+      cap_volume(std::abs(r), std::abs(r) * (1.0 - std::cos(polar)));
+  const double volume = kPi * out * out / 3.0 + (r > 0.0 ? cap : -cap);
+  return {on_wall(wall_of(films::WallKind::Cone), angle, 0.8, 0.8 * std::tan(a),
+                  volume, 1.0),
+          r, kPi * out / std::cos(a)};
+}
+
+/// About the tip of a cone, down to a ring: the film's polar angle at the wall
+/// is 120 deg - angle, at the ring 120 deg.
+Drop on_tip(double angle) {
+  const double a = radians(30.0);
+  const double polar = a + 0.5 * kPi - angle;
+  const double out = std::tan(a);  // at z = 1
+  const double r = out / std::sin(polar);
+  const double ring = 1.0 - r * std::cos(polar) - 0.5 * r;
+  const double volume = 4.0 * kPi * r * r * r / 3.0 -
+                        cap_volume(r, r * (1.0 - std::cos(polar))) -
+                        cap_volume(r, 0.5 * r) - kPi * out * out / 3.0;
+  Drop drop{on_wall(wall_of(films::WallKind::Cone), angle, 0.8,
+                    0.8 * std::tan(a), volume, 1.0),
+            r, kPi * out / std::cos(a)};
+  films::FilmSystem& system = drop.system;
+  system.curves.push_back(
+      {"ring", curves::Circle{on_axis(ring), kAxis, std::sqrt(0.75) * r}});
+  system.films[0].kind = films::FilmKind::Loft;
+  system.films[0].curves.push_back("ring");
+  system.caps.push_back({"lid", "ring"});
+  system.bodies[0].enclosed_by.push_back("lid");
+  return drop;
+}
+
+void expect_spherical(const Drop& drop, double accuracy,
+                      const std::string& name) {
+  std::vector<double> pressure_errors;
+  std::vector<double> area_errors;
+  for (const int refinements : {0, 1, 2}) {
+    const frozen::FilmModel model = frozen::FilmModel::freeze(
+        drop.system, {.edge = 0.2, .refinements = refinements});
+    ASSERT_FALSE(model.reference().failure)
+        << name << ": " << model.reference().failure->message;
+    const settle::FilmReport& report = model.reference().report;
+    EXPECT_EQ(report.index, 0) << name;
+    pressure_errors.push_back(std::abs(
+        report.bodies[0].pressure * drop.radius / (2.0 * kTension) - 1.0));
+    area_errors.push_back(
+        std::abs(model.areas(model.reference().points)[1] / drop.wetted - 1.0));
+    // The face is on the wall, and its mesh has the volume but for lenses.
+    const SurfaceMesh mesh = model.fine_mesh(model.reference().points);
+    const films::BentWall wall = *drop.system.caps[0].wall->bent();
+    for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+      for (const int v : mesh.facets[f]) {
+        if (mesh.labels[mesh.facet_label[f]] == "face") {
+          EXPECT_NEAR(films::distance_outside(wall, mesh.points[v]), 0.0,
+                      kOnWall)
+              << name;
+        }
+      }
+    }
+  }
+  EXPECT_LT(pressure_errors[2], accuracy) << name;
+  EXPECT_LT(area_errors[2], accuracy) << name;
+  for (const int k : {0, 1}) {
+    EXPECT_GT(pressure_errors[k] / pressure_errors[k + 1], kSecondOrder)
+        << name << " pressure " << pressure_errors[k];
+    EXPECT_GT(area_errors[k] / area_errors[k + 1], kSecondOrder)
+        << name << " area " << area_errors[k];
+  }
+}
+
+TEST(BentWalls, ADropOnABallIsASphereAtItsAngle) {
+  expect_spherical(on_ball(radians(80.0), 0.8), 4e-3, "80 deg");
+  expect_spherical(on_ball(radians(120.0), 1.0), 4e-3, "120 deg");
+}
+
+TEST(BentWalls, ADropInABowlIsASphereAtItsAngle) {
+  expect_spherical(in_bowl(radians(110.0), 1.2), 4e-3, "110 deg");
+}
+
+TEST(BentWalls, ADropOnAConeIsASphereAtItsAngle) {
+  expect_spherical(in_funnel(radians(110.0)), 4e-3, "funnel");
+  expect_spherical(in_funnel(radians(40.0)), 4e-3, "funnel that wets");
+  expect_spherical(on_tip(radians(70.0)), 4e-3, "tip");
+}
+
+/// A plug of liquid in a tube, which goes where it likes along it.
+TEST(BentWalls, APlugInATubeHasItsMenisci) {
+  const double angle = radians(70.0);
+  const double r = -1.0 / std::cos(angle);  // hollow
+  const double bowl = cap_volume(-r, -r - std::sqrt(r * r - 1.0));
+  films::FilmSystem system;
+  system.curves = {{"low", curves::Circle{on_axis(-0.8), kAxis, 1.0}},
+                   {"high", curves::Circle{on_axis(0.8), kAxis, 1.0}}};
+  system.films = {{"bottom", films::FilmKind::Disk, {"low"}, kTension},
+                  {"top", films::FilmKind::Disk, {"high"}, kTension}};
+  system.caps = {{.name = "face", .curve = "low", .more = {"high"}}};
+  system.caps[0].wall = wall_of(films::WallKind::Cylinder);
+  system.caps[0].wall->tension = -kTension * std::cos(angle);
+  const double length = 1.6;
+  system.bodies = {
+      {"plug", {"face", "bottom", "top"}, kPi * length - 2.0 * bowl, {}}};
+  std::vector<double> area_errors;
+  for (const int refinements : {0, 1, 2}) {
+    const frozen::FilmModel model = frozen::FilmModel::freeze(
+        system, {.edge = 0.25, .refinements = refinements});
+    ASSERT_FALSE(model.reference().failure)
+        << model.reference().failure->message;
+    EXPECT_EQ(model.reference().report.index, 0);
+    EXPECT_NEAR(
+        model.reference().report.bodies[0].pressure * r / (2.0 * kTension), 1.0,
+        2e-3);  // next to no error to fall
+    area_errors.push_back(std::abs(
+        model.areas(model.reference().points)[2] / (2.0 * kPi * length) - 1.0));
+  }
+  EXPECT_LT(area_errors[2], 1e-3);
+  for (const int k : {0, 1}) {
+    EXPECT_GT(area_errors[k] / area_errors[k + 1], kSecondOrder);
+  }
+}
+
+}  // namespace
+}  // namespace meniscus::bent_walls_test
