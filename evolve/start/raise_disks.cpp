@@ -1,12 +1,14 @@
 #include "evolve/start/raise_disks.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <set>
 
 #include <Eigen/Geometry>
 
+#include "evolve/start/cut_start.h"
 #include "evolve/start/disk_fill.h"
 
 namespace meniscus::start {
@@ -124,6 +126,18 @@ Points rim_of(const films::FilmComplex& complex, const std::string& curve) {
   return rim;
 }
 
+/// How many times the body's volume a disk on the curve begins with: it is
+/// whole, and each plane of symmetry across it leaves half.
+double parts_of(const films::FilmSystem& system, const std::string& curve) {
+  double parts = 1.0;
+  for (const curves::Curve& c : system.curves) {
+    if (c.name == curve) {
+      parts = std::pow(2.0, cuts_of(system, c).size() / 2);
+    }
+  }
+  return parts;
+}
+
 }  // namespace
 
 std::vector<RaisedDisk> raise_disks(const films::FilmSystem& system,
@@ -151,7 +165,8 @@ std::vector<RaisedDisk> raise_disks(const films::FilmSystem& system,
         double height = kUsualHeight * bulge.width();
         // Between rims of several heights there is volume below it already.
         if (body.volume && !filling.holed) {
-          height = std::min(*body.volume / films / bulge.volume(normal),
+          height = std::min(*body.volume * parts_of(system, curve) / films /
+                                bulge.volume(normal),
                             kMostHeight * bulge.width());
         }
         result.push_back(bulge.raise(label, side * height * normal, complex));
