@@ -8,6 +8,7 @@
 
 #include "cad/solid/harmonic.h"
 #include "core/error.h"
+#include "core/geometry/plane_points.h"
 
 namespace meniscus::solid {
 
@@ -80,7 +81,7 @@ std::vector<FilmSample> sample_film(const FilmMesh& mesh,
     const Vec2 r = at.row(t[2]);
     const Vec2 u = q - p;
     const Vec2 v = r - p;
-    const double area = u[0] * v[1] - u[1] * v[0];
+    const double area = cross2(u, v);
     if (!(area > 0.0)) {
       continue;
     }
@@ -93,8 +94,8 @@ std::vector<FilmSample> sample_film(const FilmMesh& mesh,
         // Barycentric coordinates by Cramer's rule; places on shared sides
         // count once, hence the margin and the marks.
         const Vec2 d = Vec2(grid_a[i], grid_b[j]) - p;
-        const double beta = (d[0] * v[1] - d[1] * v[0]) / area;
-        const double gamma = (u[0] * d[1] - u[1] * d[0]) / area;
+        const double beta = cross2(d, v) / area;
+        const double gamma = cross2(u, d) / area;
         char& seen = done[i * grid_b.size() + j];
         if (seen != 0 || beta < -1e-9 || gamma < -1e-9 ||
             beta + gamma > 1.0 + 1e-9) {

@@ -14,6 +14,8 @@ constexpr int kPieces = 64;         // between which crossings are looked for
 constexpr int kPlaces = 96;         // where a curve is compared with its image
 constexpr int kHalvings = 60;       // until a parameter is exact
 constexpr double kInPlane = 1e-12;  // of the curve's size
+constexpr double kCorner = 5e-10;   // the same, of corners: half of what an
+                                    // image may be off
 constexpr double kNextTo = 0.35;    // of a piece
 
 double wrapped(double t) {
@@ -35,17 +37,20 @@ std::vector<double> crossings(const CurveShape& shape, const Vec3& at,
   const std::vector<double> t =
       sample_parameters(shape, length_of(shape) / kPieces);
   const Points points = points_at(shape, t);
-  const double zero = kInPlane * bounding_diagonal(points);
-  const auto side = [&](const Vec3& p) {
-    const double off = normal.dot(p - at);
-    return std::abs(off) <= zero ? 0 : (off > 0.0 ? 1 : -1);
-  };
-  std::vector<double> result;
+  const double size = bounding_diagonal(points);
+  const std::vector<double> corners = corner_parameters(shape);
   const std::size_t n = t.size();
+  std::vector<int> side;
   for (std::size_t k = 0; k < n; ++k) {
-    const int here = side(points[k]);
-    const int next = side(points[(k + 1) % n]);
-    if (here == 0 && side(points[(k + n - 1) % n]) * next < 0) {
+    const double off = normal.dot(points[k] - at);
+    const double zero = (is_corner(corners, t[k]) ? kCorner : kInPlane) * size;
+    side.push_back(std::abs(off) <= zero ? 0 : (off > 0.0 ? 1 : -1));
+  }
+  std::vector<double> result;
+  for (std::size_t k = 0; k < n; ++k) {
+    const int here = side[k];
+    const int next = side[(k + 1) % n];
+    if (here == 0 && side[(k + n - 1) % n] * next < 0) {
       result.push_back(t[k]);
     }
     if (here * next >= 0) {

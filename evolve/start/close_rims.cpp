@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 
+#include "core/geometry/plane_points.h"
 #include "evolve/curves/curve.h"
 #include "evolve/curves/curve_shape.h"
 #include "evolve/start/disk_fill.h"
@@ -18,41 +19,18 @@ constexpr int kMostHalvings = 3;
 
 using Polygon = std::vector<Vec2>;
 
-double parallelogram(const Vec2& a, const Vec2& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
-
-bool sides_cross(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
-  return parallelogram(b - a, c - a) * parallelogram(b - a, d - a) < 0.0 &&
-         parallelogram(d - c, a - c) * parallelogram(d - c, b - c) < 0.0;
-}
-
-Eigen::AlignedBox2d box_around(const Vec2& a, const Vec2& b) {
-  Eigen::AlignedBox2d box(a);
-  box.extend(b);
-  return box;
-}
-
-Eigen::AlignedBox2d box_around(const Polygon& polygon) {
-  Eigen::AlignedBox2d box;
-  for (const Vec2& p : polygon) {
-    box.extend(p);
-  }
-  return box;
-}
-
 /// Of two polygons, or of one with itself.
 bool polygons_cross(const Polygon& p, const Polygon& q) {
   const bool same = &p == &q;
-  const Eigen::AlignedBox2d all = box_around(q);
+  const Eigen::AlignedBox2d all = box_of(q);
   for (std::size_t i = 0; i < p.size(); ++i) {
     const Vec2& a = p[i];
     const Vec2& b = p[(i + 1) % p.size()];
-    if (!box_around(a, b).intersects(all)) {
+    if (!box_of({a, b}).intersects(all)) {
       continue;
     }
     for (std::size_t j = same ? i + 1 : 0; j < q.size(); ++j) {
-      if (sides_cross(a, b, q[j], q[(j + 1) % q.size()])) {
+      if (segment_crossing(a, b, q[j], q[(j + 1) % q.size()])) {
         return true;
       }
     }

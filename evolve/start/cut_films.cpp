@@ -267,7 +267,9 @@ class FilmCut {
     mesh.facet_label.clear();
     for (std::size_t f = 0; f < facets.size(); ++f) {
       std::vector<int> part;  // what is left, around
-      bool behind = false;
+      // What lies in the plane is a solid's own face, which stays.
+      bool behind =
+          lies_in_plane(facets[f]) && !complex_.surfaces[labels[f]].liquid;
       for (int k = 0; k < 3; ++k) {
         const int a = facets[f][k];
         const int b = facets[f][(k + 1) % 3];
@@ -283,6 +285,19 @@ class FilmCut {
         add_part(part, labels[f]);
       }
     }
+  }
+
+  bool lies_in_plane(const Triangle& t) const {
+    return std::all_of(t.begin(), t.end(),
+                       [&](int v) { return off_[v] == 0.0; });
+  }
+
+  /// Of a curve in the plane, which holds what ends there.
+  bool is_on_curve(int a, int b) const {
+    const films::ComplexVertex& from = complex_.vertices[a];
+    const films::ComplexVertex& to = complex_.vertices[b];
+    return from.kind == films::VertexKind::OnCurve &&
+           to.kind == films::VertexKind::OnCurve && from.curve == to.curve;
   }
 
   void add_part(const std::vector<int>& part, int label) {
@@ -318,32 +333,38 @@ class FilmCut {
   }
 
   void mark_edges() {
-    std::map<Edge, int> marked;
+    std::map<Edge, films::ComplexEdge> marked;
     for (const films::ComplexEdge& mark : complex_.edges) {
-      marked[edge_key(mark.a, mark.b)] = mark.constraints;
+      marked[edge_key(mark.a, mark.b)] = mark;
     }
     const SurfaceMesh& mesh = complex_.mesh;
     for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+      if (lies_in_plane(mesh.facets[f])) {
+        continue;
+      }
       const films::ComplexSurface& surface =
           complex_.surfaces[mesh.facet_label[f]];
       for (int k = 0; k < 3; ++k) {
         const int a = mesh.facets[f][k];
         const int b = mesh.facets[f][(k + 1) % 3];
-        if (off_[a] != 0.0 || off_[b] != 0.0) {
+        if (off_[a] != 0.0 || off_[b] != 0.0 || is_on_curve(a, b)) {
           continue;
         }
-        const auto [known, is_new] =
-            marked.try_emplace(edge_key(a, b), plane_.set);
+        const auto [known, is_new] = marked.try_emplace(edge_key(a, b));
+        films::ComplexEdge& mark = known->second;
         if (is_new) {
-          add_mark(a, b, surface);
-        } else if (known->second != plane_.set) {
+          mark = mark_of(a, b, surface);
+          complex_.edges.push_back(mark);
+        } else if (mark.constraints != plane_.set &&
+                   mark.kind != films::VertexKind::OnCurve) {
           refuse_along(surface.name, mesh.points[a]);
         }
       }
     }
   }
 
-  void add_mark(int a, int b, const films::ComplexSurface& surface) {
+  films::ComplexEdge mark_of(int a, int b,
+                             const films::ComplexSurface& surface) const {
     films::ComplexEdge mark;
     mark.a = a;
     mark.b = b;
@@ -352,14 +373,14 @@ class FilmCut {
       mark.kind = films::VertexKind::OnBand;
       mark.curve = surface.band;
     }
-    complex_.edges.push_back(mark);
+    return mark;
   }
 
   [[noreturn]] static void refuse_along(const std::string& name,
                                         const Vec3& p) {
     throw InvalidInput(fmt::format(
-        "'{}' runs along the line where two planes of symmetry, or a curve and "
-        "one of them, meet at ({:.6g}, {:.6g}, {:.6g}); draw the whole",
+        "'{}' runs along the line where two planes of symmetry meet at "
+        "({:.6g}, {:.6g}, {:.6g}); draw the whole",
         name, p.x(), p.y(), p.z()));
   }
 

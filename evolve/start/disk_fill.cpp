@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -10,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/geometry/plane_points.h"
 #include "core/heed_stop.h"
 #include "evolve/groom/surface_editor.h"
 #include "evolve/start/loft.h"
@@ -17,22 +19,6 @@
 namespace meniscus::start {
 
 namespace {
-
-using Vec2 = Eigen::Vector2d;
-
-double cross2(const Vec2& a, const Vec2& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
-
-/// On which sides of each segment the other's ends lie: both negative where
-/// they cross, one 0 where an end lies on the other's line.
-std::array<double, 2> sides(const Vec2& a, const Vec2& b, const Vec2& c,
-                            const Vec2& d) {
-  const Vec2 first = b - a;
-  const Vec2 second = d - c;
-  return {cross2(first, c - a) * cross2(first, d - a),
-          cross2(second, a - c) * cross2(second, b - c)};
-}
 
 /// The rim's points in its plane, counter-clockwise.
 std::vector<Vec2> flattened(const Points& points, const Points& rim) {
@@ -57,11 +43,7 @@ class EarClipper {
   EarClipper(const Points& points, const std::vector<Vec2>& flat,
              std::vector<int> ring)
       : points_(points), flat_(flat), ring_(std::move(ring)) {
-    Eigen::AlignedBox2d box;
-    for (const Vec2& p : flat_) {
-      box.extend(p);
-    }
-    on_line_ = kOnLine * box.diagonal().squaredNorm();
+    on_line_ = kOnLine * box_of(flat_).diagonal().squaredNorm();
     const int n = static_cast<int>(ring_.size());
     for (int i = 0; i < n; ++i) {
       next_.push_back((i + 1) % n);
@@ -85,7 +67,7 @@ class EarClipper {
         }
       }
       if (!(shape_[best] > 0.0) && left > 3) {
-        const Vec3& p = points_[crossing(ring_[best])];
+        const Vec3 p = crossing();
         throw MeshError(fmt::format(
             "seen along the normal of its plane, a closed curve crosses itself "
             "or another near ({:.6g}, {:.6g}, {:.6g}) and cannot be filled",
@@ -105,24 +87,32 @@ class EarClipper {
   }
 
  private:
-  /// The first point of the ring whose side meets another; `otherwise` where
-  /// none does.
-  int crossing(int otherwise) const {
+  /// Where sides of the ring cross; else the corner that is nearest to a side
+  /// of others, which it touches.
+  Vec3 crossing() const {
     const auto at = [&](std::size_t i) { return ring_[i % ring_.size()]; };
+    double nearest = std::numeric_limits<double>::infinity();
+    int touching = ring_[0];
     for (std::size_t i = 0; i < ring_.size(); ++i) {
-      for (std::size_t j = i + 2; j < ring_.size(); ++j) {
-        const int a = at(i);
-        const int b = at(i + 1);
+      const int a = at(i);
+      const int b = at(i + 1);
+      for (std::size_t j = 0; j < ring_.size(); ++j) {
         const int c = at(j);
-        const int d = at(j + 1);
-        const auto [of_second, of_first] =
-            sides(flat_[a], flat_[b], flat_[c], flat_[d]);
-        if (of_second < 0.0 && of_first < 0.0) {
-          return a;
+        if (c == a || c == b) {
+          continue;
+        }
+        if (const auto share = segment_crossing(flat_[a], flat_[b], flat_[c],
+                                                flat_[at(j + 1)])) {
+          return points_[a] + *share * (points_[b] - points_[a]);
+        }
+        const double off = distance_to_segment(flat_[c], flat_[a], flat_[b]);
+        if (off < nearest) {
+          nearest = off;
+          touching = c;
         }
       }
     }
-    return otherwise;
+    return points_[touching];
   }
 
   // Smallest angle of the ear at i; 0 when it is none.
@@ -232,7 +222,7 @@ class HoleBridges {
         continue;
       }
       const auto [of_second, of_first] =
-          sides(flat_[a], flat_[b], flat_[c], flat_[d]);
+          segment_sides(flat_[a], flat_[b], flat_[c], flat_[d]);
       if (of_second <= 0.0 && of_first <= 0.0) {
         return true;
       }

@@ -15,7 +15,8 @@ namespace meniscus::start {
 
 namespace {
 
-constexpr double kOnPlane = 1e-9;  // of the size
+constexpr double kOnPlane = 1e-9;   // of the size
+constexpr double kParallel = 1e-6;  // sine between normals
 
 }  // namespace
 
@@ -178,47 +179,49 @@ std::vector<std::vector<int>> FaceSeams::loops(const FacePlane& face,
 /// a face; where one is left over, seams of two planes meet in a corner.
 void FaceSeams::close(const FacePlane& face, const std::vector<End>& ends,
                       std::map<int, int>& next) {
-  struct Left {
+  struct Seam {
     std::size_t plane;
-    End end;
+    Vec3 along;
+    std::vector<std::pair<double, End>> on;  // by the way along
   };
-  std::vector<Left> left;
+  std::vector<Seam> seams;
+  std::vector<std::size_t> odd;
   for (std::size_t p = 0; p < planes_.size(); ++p) {
     const FacePlane& plane = planes_[p];
-    if (plane.set == face.set) {
-      continue;
+    Seam seam{p, face.normal.cross(plane.normal), {}};
+    if (plane.set == face.set || seam.along.norm() < kParallel) {
+      continue;  // its own, or that of a solid's face that lies in it
     }
-    const Vec3 along = face.normal.cross(plane.normal);
-    std::vector<std::pair<double, End>> on;
     for (const End& end : ends) {
       const Vec3& at = complex_.mesh.points[end.vertex];
       if (std::abs(plane.normal.dot(at - plane.at)) <= reach_) {
-        on.emplace_back(along.dot(at), end);
+        seam.on.emplace_back(seam.along.dot(at), end);
       }
     }
-    std::sort(on.begin(), on.end(),
+    std::sort(seam.on.begin(), seam.on.end(),
               [](const auto& a, const auto& b) { return a.first < b.first; });
-    if (on.size() % 2 == 1) {
-      // The kept side of another plane has the corner at the far end.
-      const FacePlane* other = nullptr;
-      for (const FacePlane& q : planes_) {
-        if (q.set != plane.set && q.set != face.set) {
-          other = &q;
-        }
-      }
-      const bool at_last = other == nullptr || along.dot(other->normal) > 0.0;
-      const std::size_t k = at_last ? on.size() - 1 : 0;
-      left.push_back({p, on[k].second});
-      on.erase(on.begin() + static_cast<std::ptrdiff_t>(k));
+    if (seam.on.size() % 2 == 1) {
+      odd.push_back(seams.size());
     }
-    for (std::size_t k = 0; k + 1 < on.size(); k += 2) {
-      join(face, p, on[k].second, on[k + 1].second, next);
+    seams.push_back(std::move(seam));
+  }
+  if (odd.size() == 2) {
+    const int middle = corner(face, seams[odd[0]].plane, seams[odd[1]].plane);
+    for (const std::size_t s : odd) {
+      Seam& seam = seams[s];
+      const double there = seam.along.dot(complex_.mesh.points[middle]);
+      const auto nearest = std::min_element(
+          seam.on.begin(), seam.on.end(), [&](const auto& a, const auto& b) {
+            return std::abs(a.first - there) < std::abs(b.first - there);
+          });
+      const End end = nearest->second;
+      seam.on.erase(nearest);
+      join(face, seam.plane, end, {middle, !end.starts}, next);
     }
   }
-  if (left.size() == 2) {
-    const int middle = corner(face, left[0].plane, left[1].plane);
-    for (const Left& one : left) {
-      join(face, one.plane, one.end, {middle, !one.end.starts}, next);
+  for (const Seam& seam : seams) {
+    for (std::size_t k = 0; k + 1 < seam.on.size(); k += 2) {
+      join(face, seam.plane, seam.on[k].second, seam.on[k + 1].second, next);
     }
   }
 }

@@ -9,6 +9,7 @@
 
 #include <Eigen/Geometry>
 
+#include "evolve/start/cut_start.h"
 #include "evolve/start/disk_fill.h"
 
 namespace meniscus::start {
@@ -147,6 +148,18 @@ Points rim_of(const films::FilmComplex& complex, const std::string& curve) {
   return rim;
 }
 
+/// How many times the body's volume a disk on the curve begins with: it is
+/// whole, and each plane of symmetry across it leaves half.
+double parts_of(const films::FilmSystem& system, const std::string& curve) {
+  double parts = 1.0;
+  for (const curves::Curve& c : system.curves) {
+    if (c.name == curve) {
+      parts = std::pow(2.0, cuts_of(system, c).size() / 2);
+    }
+  }
+  return parts;
+}
+
 }  // namespace
 
 std::vector<RaisedDisk> raise_disks(const films::FilmSystem& system,
@@ -183,9 +196,10 @@ std::vector<RaisedDisk> raise_disks(const films::FilmSystem& system,
         double height = kUsualHeight * bulge.width();
         // Between rims of several heights there is volume below it already.
         if (body.volume && !filling.holed) {
-          height =
-              std::min((*body.volume / films + beneath) / bulge.volume(normal),
-                       kMostHeight * bulge.width());
+          const double wanted =
+              *body.volume * parts_of(system, curve) / films + beneath;
+          height = std::min(wanted / bulge.volume(normal),
+                            kMostHeight * bulge.width());
         } else {
           height += beneath / bulge.volume(normal);
         }

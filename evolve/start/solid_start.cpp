@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "core/geometry/edge_key.h"
 #include "core/geometry/exact_points.h"
+#include "core/geometry/plane_points.h"
 #include "evolve/curves/curve_place.h"
 #include "evolve/films/solid_frame.h"
 #include "evolve/start/cap_faces.h"
@@ -100,9 +101,7 @@ void shift_loops(const ExactSurface& surface,
 double area_of(const std::vector<Vec2>& loop) {
   double sum = 0.0;
   for (std::size_t k = 0; k < loop.size(); ++k) {
-    const Vec2& a = loop[k];
-    const Vec2& b = loop[(k + 1) % loop.size()];
-    sum += a[0] * b[1] - a[1] * b[0];
+    sum += cross2(loop[k], loop[(k + 1) % loop.size()]);
   }
   return std::abs(sum);
 }

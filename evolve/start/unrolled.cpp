@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/geometry/exact_points.h"
+#include "core/geometry/plane_points.h"
 
 namespace meniscus::start {
 
@@ -20,32 +21,16 @@ constexpr double kAtPole = 1e-6;                     // [rad] of latitude
 constexpr int kLengthSteps = 64;   // of a line whose length is summed
 constexpr double kTouches = 1e-9;  // [rad] a plane's angle of a whole turn
 
-struct Box {
-  Vec2 low;
-  Vec2 high;
-  Vec2 middle() const { return 0.5 * (low + high); }
-};
-
-Box box_of(const std::vector<std::vector<Vec2>>& loops) {
-  Box box{loops.at(0).at(0), loops[0][0]};
-  for (const auto& loop : loops) {
-    for (const Vec2& p : loop) {
-      box.low = box.low.cwiseMin(p);
-      box.high = box.high.cwiseMax(p);
-    }
-  }
-  return box;
-}
-
 /// Length to parameter along `axis` through the middle of the box.
-double scale_along(const ExactSurface& surface, const Box& box, int axis) {
-  Vec2 place = box.middle();
-  place[axis] = box.low[axis];
+double scale_along(const ExactSurface& surface, const Eigen::AlignedBox2d& box,
+                   int axis) {
+  Vec2 place = box.center();
+  place[axis] = box.min()[axis];
   Vec3 last = point_on(surface, place);
   double sum = 0.0;
-  const double range = box.high[axis] - box.low[axis];
+  const double range = box.max()[axis] - box.min()[axis];
   for (int k = 1; k <= kLengthSteps; ++k) {
-    place[axis] = box.low[axis] + range * k / kLengthSteps;
+    place[axis] = box.min()[axis] + range * k / kLengthSteps;
     const Vec3 next = point_on(surface, place);
     sum += (next - last).norm();
     last = next;
@@ -65,13 +50,14 @@ Vec3 normal_at(const ExactSurface& surface, const Vec2& place,
 }
 
 /// Longest edge along `axis` through the middle of the box.
-double longest_along(const ExactSurface& surface, const Box& box, int axis) {
-  const Vec2 size = box.high - box.low;
-  Vec2 place = box.middle();
+double longest_along(const ExactSurface& surface,
+                     const Eigen::AlignedBox2d& box, int axis) {
+  const Vec2 size = box.max() - box.min();
+  Vec2 place = box.center();
   double turn = 0.0;
   Vec3 last = Vec3::Zero();
   for (int k = 0; k < kLengthSteps; ++k) {
-    place[axis] = box.low[axis] + size[axis] * (k + 0.5) / kLengthSteps;
+    place[axis] = box.min()[axis] + size[axis] * (k + 0.5) / kLengthSteps;
     const Vec3 normal = normal_at(surface, place, size);
     turn +=
         k == 0 ? 0.0 : std::atan2(last.cross(normal).norm(), last.dot(normal));
@@ -86,20 +72,24 @@ double longest_along(const ExactSurface& surface, const Box& box, int axis) {
 
 Unrolled::Unrolled(const ExactSurface& surface,
                    const std::vector<std::vector<Vec2>>& around) {
-  const Box box = box_of(around);
-  zero_ = box.middle()[0];
+  Eigen::AlignedBox2d box;
+  for (const std::vector<Vec2>& loop : around) {
+    box.extend(box_of(loop));
+  }
+  const Vec2 middle = box.center();
+  zero_ = middle[0];
   longest_edge_ =
       std::min(longest_along(surface, box, 0), longest_along(surface, box, 1));
   if (const auto* cone = std::get_if<ExactCone>(&surface)) {
     about_apex_ = true;
     apex_ = -cone->radius / std::sin(cone->angle);
-    side_ = box.middle()[1] > apex_ ? 1.0 : -1.0;
+    side_ = middle[1] > apex_ ? 1.0 : -1.0;
     turn_ = std::abs(std::sin(cone->angle));
     return;
   }
   if (const auto* sphere = std::get_if<ExactSphere>(&surface)) {
-    const bool north = box.high[1] > kQuarter - kAtPole;
-    const bool south = box.low[1] < -kQuarter + kAtPole;
+    const bool north = box.max()[1] > kQuarter - kAtPole;
+    const bool south = box.min()[1] < -kQuarter + kAtPole;
     if (north && south) {
       throw InvalidInput(
           "a face that is a sphere from pole to pole is not meshed; cut it in "
@@ -110,7 +100,7 @@ Unrolled::Unrolled(const ExactSurface& surface,
       apex_ = north ? kQuarter : -kQuarter;
       side_ = north ? -1.0 : 1.0;
       scale_[1] = sphere->radius;
-      const double reach = north ? apex_ - box.low[1] : box.high[1] - apex_;
+      const double reach = north ? apex_ - box.min()[1] : box.max()[1] - apex_;
       turn_ = std::min(std::sin(reach) / reach, 1.0 - kTouches);
       turn_ = std::max(turn_, 0.3);  // beyond the equator
       return;

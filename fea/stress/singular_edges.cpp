@@ -60,7 +60,11 @@ double clamp_order(double angle, double poisson) {
 
 std::vector<SingularEdge> singular_edges(const TetMesh& mesh,
                                          const std::vector<char>& held,
-                                         const std::vector<double>& poisson) {
+                                         const std::vector<double>& poisson,
+                                         const std::vector<char>& mirrors) {
+  const auto is_mirror = [&](int face) {
+    return !mirrors.empty() && mirrors[face] != 0 && held[face] == 0;
+  };
   const element::FaceQuadrature at_nodes(mesh.order, element::FaceRule::Nodes);
   std::vector<SingularEdge> edges;
   for (const element::OuterEdge& outer : element::outer_edges(mesh)) {
@@ -74,6 +78,15 @@ std::vector<SingularEdge> singular_edges(const TetMesh& mesh,
         .labels = {mesh.face_label[first], mesh.face_label[second]},
         .clamped = held[first] != 0,
         .angle = kPi + turn};
+    if (is_mirror(first) || is_mirror(second)) {
+      edge.angle = std::min(2.0 * edge.angle, 2.0 * kPi);
+      if (held[first] == 0 && is_mirror(first) != is_mirror(second) &&
+          edge.angle > kPi + kSharpTurn) {
+        edge.order = groove_order(edge.angle);
+        edges.push_back(edge);
+      }
+      continue;
+    }
     const bool is_sharp =
         turn > (edge.labels[0] == edge.labels[1] ? kSharpTurn : kLeastTurn);
     if (held[first] != 0 && held[second] == 0) {

@@ -32,12 +32,15 @@ struct SingularEdge {
 /// Edges between faces of different labels, and others that are as sharp as no
 /// smooth face makes them. `held`: one char per face, 1 where every component
 /// of displacement is fixed; an edge between two held faces counts as free of
-/// stress peaks. `poisson`: by region. Not found: where materials meet at the
-/// surface, and where a load ends amid a face. By faces, the same for any
-/// thread count.
+/// stress peaks. `mirrors`: the same, 1 in planes of symmetry; empty for none:
+/// an edge there is one of the whole, between a face and its image, with twice
+/// the angle, and none where the face is held. `poisson`: by region. Not found:
+/// where materials meet at the surface, and where a load ends amid a face. By
+/// faces, the same for any thread count.
 std::vector<SingularEdge> singular_edges(const TetMesh& mesh,
                                          const std::vector<char>& held,
-                                         const std::vector<double>& poisson);
+                                         const std::vector<double>& poisson,
+                                         const std::vector<char>& mirrors = {});
 
 /// The von Mises stress at a singular edge, and what it would be there with
 /// edges `factor` times shorter, by the edge's order.

@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 
 #include "core/geometry/surface_mesh.h"
+#include "evolve/curves/curve_place.h"
+#include "pipeline/case_data/case_curves.h"
 #include "pipeline/case_data/case_symmetry.h"
 
 namespace meniscus::case_data {
@@ -108,11 +110,16 @@ void check_curve(const Case& input, const std::string& name, bool of_film,
           at.z()));
       return;
     }
-    if (of_film && reach.most >= -reach.rounding && !reach.is_in_plane()) {
+    // Faces may have sides and corners in the plane.
+    const bool apart =
+        of_film || curves::corner_parameters(curve->shape).empty();
+    if (apart && reach.most >= -reach.rounding && !reach.is_in_plane()) {
       values.problems().push_back(fmt::format(
-          "{}: curve '{}', which holds a film, touches plane {} of symmetry at "
-          "({:.4g}, {:.4g}, {:.4g}); expected it beside the plane or in it",
-          place(input, entry->line), name, p + 1, at.x(), at.y(), at.z()));
+          "{}: curve '{}'{} touches plane {} of symmetry at ({:.4g}, {:.4g}, "
+          "{:.4g}); expected it beside the plane or in it",
+          place(input, entry->line), name,
+          of_film ? ", which holds a film," : "", p + 1, at.x(), at.y(),
+          at.z()));
       return;
     }
   }
@@ -121,21 +128,15 @@ void check_curve(const Case& input, const std::string& name, bool of_film,
 void check_curves_of(const Case& input, const films::FilmSystem& system,
                      const CaseValues& values) {
   std::set<std::string> of_films;
-  std::set<std::string> all;
   for (const films::FilmSpec& film : system.films) {
     of_films.insert(film.curves.begin(), film.curves.end());
   }
-  for (const films::CapSpec& cap : system.caps) {
-    const std::vector<std::string> curves = cap.curves();
-    all.insert(curves.begin(), curves.end());
-  }
-  all.insert(of_films.begin(), of_films.end());
   std::vector<std::set<std::string>> cut;
   const std::vector<curves::Curve> initial = curves_at_start(input);
   for (const SymmetryPlane& plane : input.symmetry) {
     cut.push_back(cut_by(plane, initial));
   }
-  for (const std::string& curve : all) {
+  for (const std::string& curve : held_curves(input)) {
     check_curve(input, curve, of_films.contains(curve), cut, system, values);
   }
 }

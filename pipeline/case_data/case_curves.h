@@ -1,6 +1,8 @@
 /// From the curves of a case to their numbers at one design.
 #pragma once
 
+#include <set>
+#include <string>
 #include <vector>
 
 #include "evolve/films/film_system.h"
@@ -13,6 +15,9 @@ namespace meniscus::case_data {
 /// told in the problems of `values`.
 std::vector<curves::Curve> curves_of(const Case& input,
                                      const CaseValues& values);
+
+/// The names of curves that films and solids end at.
+std::set<std::string> held_curves(const Case& input);
 
 /// Tells of curves that hold films or caps and touch or cross each other.
 void check_meetings(const Case& input, const films::FilmSystem& system,

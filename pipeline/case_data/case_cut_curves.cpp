@@ -39,8 +39,11 @@ class CutCheck {
         values_(values) {}
 
   void run(const films::FilmSystem& system) {
+    const std::set<std::string> held = held_curves(input_);
     for (std::size_t c = 0; c < system.curves.size(); ++c) {
-      check_curve(system.curves[c], initial_[c]);
+      if (held.contains(system.curves[c].name)) {
+        check_curve(system.curves[c], initial_[c]);
+      }
     }
     check_holders();
     for (const FilletEntry& fillet : input_.fillets) {
@@ -78,13 +81,18 @@ class CutCheck {
       return;  // beyond the plane, it is told as such
     }
     const Reach reach = reach_of(plane_, curve);
-    const auto off = [&](const std::vector<double>& at) {
-      return at.size() == 2 ? curves::asymmetry(curve.shape, plane_.at,
-                                                plane_.normal, at[0])
-                            : 2.0 * reach.most;
-    };
+    const std::vector<double> at =
+        curves::crossings(curve.shape, plane_.at, plane_.normal);
+    if (at.size() != 2) {
+      add(line_of(curve.name),
+          fmt::format("curve '{}' passes plane {} of symmetry at {} places of "
+                      "its own; expected two, as a curve that is its own image "
+                      "there has at every design, or a curve beside the plane",
+                      curve.name, number_, at.size()));
+      return;
+    }
     const double now =
-        off(curves::crossings(curve.shape, plane_.at, plane_.normal));
+        curves::asymmetry(curve.shape, plane_.at, plane_.normal, at[0]);
     if (!(now <= reach.rounding)) {
       add(line_of(curve.name),
           fmt::format(
@@ -92,8 +100,7 @@ class CutCheck {
               "image there: it is {:.4g} off; expected one that is (corners, "
               "points and parts too), or one beside the plane or in it",
               curve.name, number_, now));
-    } else if (!(off(curves::crossings(initial.shape, plane_.at,
-                                       plane_.normal)) <= reach.rounding)) {
+    } else if (!stays(curve, initial, reach.rounding)) {
       add(line_of(curve.name),
           fmt::format("curve '{}' crosses plane {} of symmetry at other places "
                       "of its own than at the initial design; of a circle that "
@@ -101,6 +108,15 @@ class CutCheck {
                       "across it, let a spline begin in the plane",
                       curve.name, number_));
     }
+  }
+
+  /// Does the plane cut the curve where it cuts the initial one?
+  bool stays(const curves::Curve& curve, const curves::Curve& initial,
+             double rounding) const {
+    const std::vector<double> at =
+        curves::crossings(initial.shape, plane_.at, plane_.normal);
+    return !at.empty() && curves::asymmetry(curve.shape, plane_.at,
+                                            plane_.normal, at[0]) <= rounding;
   }
 
   void check_holders() {

@@ -43,18 +43,6 @@ bool alike(const Outline& a, const Outline& b) {
   return (a.low - b.low).norm() <= near && (a.high - b.high).norm() <= near;
 }
 
-std::set<std::string> held_curves(const Case& input) {
-  std::set<std::string> held;
-  for (const FilmEntry& film : input.films) {
-    held.insert(film.spec.curves.begin(), film.spec.curves.end());
-  }
-  for (const CapEntry& cap : input.caps) {
-    const std::vector<std::string> curves = cap.spec.curves();
-    held.insert(curves.begin(), curves.end());
-  }
-  return held;
-}
-
 /// Outlines of the held curves, from the least x up.
 std::vector<Outline> outlines_of(const Case& input,
                                  const std::vector<curves::Curve>& curves) {
@@ -119,6 +107,18 @@ void rename(const std::map<std::string, std::string>& kept,
 }
 
 }  // namespace
+
+std::set<std::string> held_curves(const Case& input) {
+  std::set<std::string> held;
+  for (const FilmEntry& film : input.films) {
+    held.insert(film.spec.curves.begin(), film.spec.curves.end());
+  }
+  for (const CapEntry& cap : input.caps) {
+    const std::vector<std::string> curves = cap.spec.curves();
+    held.insert(curves.begin(), curves.end());
+  }
+  return held;
+}
 
 void merge_curves(Case& input, CaseProblems& problems) {
   std::vector<std::string> found;

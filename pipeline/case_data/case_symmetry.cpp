@@ -31,7 +31,7 @@ QuantityVector constants(const Vec3& vector, const char* key, SourceLine line) {
 }
 
 /// The face that a plane cuts of a body: films end there at these curves, and
-/// where it `cuts` others.
+/// where it `cuts` others, of this or another body.
 CapEntry cut_face(const Case& input, const std::string& body, int plane,
                   const std::vector<std::string>& curves, bool cuts) {
   const SymmetryPlane& at = input.symmetry[static_cast<std::size_t>(plane)];
@@ -99,7 +99,9 @@ void add_faces(Case& input, int plane, const std::set<std::string>& in_plane,
         cut.begin(), cut.end(),
         [&](const std::string& name) { return names(body.enclosed_by, name); });
     if (!curves.empty() || cuts) {
-      input.caps.push_back(cut_face(input, body.name, plane, curves, cuts));
+      // All faces in a plane that cuts are cut alike.
+      input.caps.push_back(
+          cut_face(input, body.name, plane, curves, !cut.empty()));
       body.enclosed_by.push_back(input.caps.back().spec.name);
     }
   }

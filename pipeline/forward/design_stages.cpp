@@ -8,6 +8,7 @@
 #include "mesh_tet/motion_check.h"
 #include "mesh_tet/quadratic.h"
 #include "pipeline/forward/frozen_part.h"
+#include "pipeline/forward/planes_kept.h"
 #include "pipeline/forward/walls.h"
 
 namespace meniscus::forward {
@@ -61,6 +62,9 @@ bool settle_film(const case_data::Case& input, const frozen::FilmModel& film,
   result.film = state.report;
   meter.add_to(result.seconds.film, result.operations.film);
   result.failure = state.failure;
+  if (!result.failure && !input.symmetry.empty()) {
+    result.failure = beyond_planes(input, film.fine_mesh(state.points));
+  }
   return !result.failure;
 }
 

@@ -13,6 +13,7 @@
 #include "pipeline/case_films/film_options.h"
 #include "pipeline/case_films/film_start.h"
 #include "pipeline/forward/fillets.h"
+#include "pipeline/forward/planes_kept.h"
 #include "pipeline/forward/walls.h"
 #include "pipeline/forward/work_estimate.h"
 
@@ -72,6 +73,10 @@ bool freeze_film(const case_data::EvaluatedCase& inputs,
   const settle::FilmState& film = part.film->reference();
   start.film = film.report;
   start.failure = film.failure;
+  if (!start.failure && !part.input.symmetry.empty()) {
+    start.failure =
+        beyond_planes(part.input, part.film->fine_mesh(film.points));
+  }
   if (!start.failure) {
     part.fillets = fillet_model(part.input, inputs, *part.film, film.points,
                                 start.failure);

@@ -38,6 +38,22 @@ std::vector<char> held_faces(const TetMesh& mesh, const loads::LoadCase& load) {
   return held;
 }
 
+/// One char per face: 1 in planes of symmetry.
+std::vector<char> mirror_faces(const TetMesh& mesh,
+                               const loads::LoadCase& load) {
+  std::vector<char> mirrors(mesh.face_label.size(), 0);
+  for (const loads::Support& support : load.supports) {
+    const int label = mesh.label_of(support.surface);
+    for (std::size_t f = 0; f < mirrors.size(); ++f) {
+      if (support.kind == loads::SupportKind::Symmetry &&
+          mesh.face_label[f] == label) {
+        mirrors[f] = 1;
+      }
+    }
+  }
+  return mirrors;
+}
+
 /// Poisson's ratio by region; the largest where it differs by direction.
 std::vector<double> poisson_ratios(
     const std::vector<element::Material>& materials) {
@@ -98,9 +114,10 @@ class LogSum {
 
 std::vector<stress::SingularEdge> singular_edges_of(
     const EvaluationFields& fields, std::size_t load_case) {
-  return stress::singular_edges(
-      fields.mesh, held_faces(fields.mesh, fields.inputs.load_cases[load_case]),
-      poisson_ratios(fields.inputs.materials));
+  const loads::LoadCase& load = fields.inputs.load_cases[load_case];
+  return stress::singular_edges(fields.mesh, held_faces(fields.mesh, load),
+                                poisson_ratios(fields.inputs.materials),
+                                mirror_faces(fields.mesh, load));
 }
 
 double growth_of_mean(const case_data::ResponseEntry& response,

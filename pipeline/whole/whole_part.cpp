@@ -233,25 +233,39 @@ element::PointStress with_image(const element::PointStress& drawn,
   return whole;
 }
 
+element::Stress mean(const element::Stress& a, const element::Stress& b) {
+  element::Stress result;
+  for (std::size_t k = 0; k < result.size(); ++k) {
+    result[k] = 0.5 * (a[k] + b[k]);
+  }
+  return result;
+}
+
+/// At nodes in the plane the mean of both sides, whose shear across the plane
+/// cancels: recovery knew one side alone.
 stress::RecoveredStress with_image(const stress::RecoveredStress& drawn,
                                    const TetMesh& whole, const Mirror& mirror) {
   stress::RecoveredStress result{.nodes = element::region_nodes(whole),
                                  .value = {}};
-  result.value.resize(static_cast<std::size_t>(result.nodes.count()));
+  const auto count = static_cast<std::size_t>(result.nodes.count());
+  result.value.resize(count);
+  std::vector<char> is_drawn(count, 0);
   const int elements = whole.element_count() / 2;
-  for (int e = 0; e < elements; ++e) {
-    const std::span<const int> from = drawn.nodes.element(e);
-    const std::span<const int> image = result.nodes.element(e + elements);
-    for (std::size_t k = 0; k < from.size(); ++k) {
-      result.value[image[k]] =
-          mirror.stress(drawn.value[from[kElementImage[k]]]);
-    }
-  }
   for (int e = 0; e < elements; ++e) {
     const std::span<const int> from = drawn.nodes.element(e);
     const std::span<const int> to = result.nodes.element(e);
     for (std::size_t k = 0; k < from.size(); ++k) {
       result.value[to[k]] = drawn.value[from[k]];
+      is_drawn[to[k]] = 1;
+    }
+  }
+  for (int e = 0; e < elements; ++e) {
+    const std::span<const int> from = drawn.nodes.element(e);
+    const std::span<const int> to = result.nodes.element(e + elements);
+    for (std::size_t k = 0; k < to.size(); ++k) {
+      const element::Stress& here = drawn.value[from[kElementImage[k]]];
+      const element::Stress image = mirror.stress(here);
+      result.value[to[k]] = is_drawn[to[k]] != 0 ? mean(here, image) : image;
     }
   }
   return result;

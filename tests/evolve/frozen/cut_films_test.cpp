@@ -2,6 +2,7 @@
 // the whole's.
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -11,12 +12,14 @@
 #include "core/error.h"
 #include "core/geometry/mesh_checks.h"
 #include "evolve/curves/curve_cut.h"
+#include "evolve/films/body_sides.h"
 #include "evolve/frozen/film_model.h"
 #include "evolve/start/start_complex.h"
 
 namespace meniscus::cut_films_test {
 namespace {
 
+using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
@@ -280,6 +283,96 @@ TEST(CutFilms, BodiesMayShareAFilmThatIsCut) {
   EXPECT_NEAR(2.0 * part.area / whole.area, 1.0, kFacets);
   for (Eigen::Index b = 0; b < 2; ++b) {
     EXPECT_NEAR(part.pressures[b] / whole.pressures[b], 1.0, kFacets);
+  }
+}
+
+// Off by what a text's digits leave, less than an image may be.
+TEST(CutFilms, CornersNextToAPlaneAreWhereItPasses) {
+  constexpr double kOff = 9e-10;
+  const curves::Polygon square{
+      {{-kOff, -1, 0}, {1, 0, 0}, {kOff, 1, 0}, {-1, 0, 0}}};
+  const std::vector<double> at =
+      curves::crossings(square, Vec3::Zero(), Vec3::UnitX());
+  EXPECT_THAT(at, ElementsAre(0.0, 0.5));
+  const std::vector<double> samples = curves::sample_parameters(square, 0.1);
+  EXPECT_EQ(curves::with_parameters(square, samples, at), samples);
+}
+
+/// The first film's highest point.
+double height_of(const films::FilmSystem& system) {
+  const films::FilmComplex start = start::build_start(system, 0.2);
+  double most = 0.0;
+  for (std::size_t f = 0; f < start.mesh.facets.size(); ++f) {
+    for (const int v : start.mesh.facets[f]) {
+      most = start.mesh.facet_label[f] == 0
+                 ? std::max(most, start.mesh.points[v].z())
+                 : most;
+    }
+  }
+  return most;
+}
+
+TEST(CutFilms, DisksBeginAsHighAsThoseOfTheWhole) {
+  films::FilmSystem whole;
+  whole.curves = {{"rim", curves::Circle{}}};
+  whole.films = {{"drop", films::FilmKind::Disk, {"rim"}, 1.0, {}}};
+  whole.caps = {{"foot", "rim"}};
+  whole.bodies = {{"part", {"drop", "foot"}, 1.2, {}}};
+  for (const int planes : {1, 2}) {
+    films::FilmSystem part = whole;
+    cut(part, planes);
+    EXPECT_NEAR(height_of(part) / height_of(whole), 1.0, 0.05) << planes;
+  }
+}
+
+// An elbow from one plane to another, its foot across two others with a window
+// beside their corner: the third one lies along the foot.
+TEST(CutFilms, AFaceIsClosedByThePlanesThatMeetIt) {
+  constexpr double kChords = 0.03;
+  films::FilmSystem system;
+  system.curves = {
+      {"low", curves::Circle{Vec3(0, 0, -1.5), -Vec3::UnitZ(), 0.5}},
+      {"west", curves::Circle{Vec3(-1.5, 0, 0), -Vec3::UnitX(), 0.5}},
+      {"hole", curves::Circle{Vec3(-0.25, 0, -1.5), -Vec3::UnitZ(), 0.12}}};
+  system.films = {{"skin", films::FilmKind::Branch, {"low", "west"}, 1.0, {}},
+                  {"window", films::FilmKind::Disk, {"hole"}, 1.0, {}}};
+  system.caps = {{"foot", "low"}, {"side", "west"}};
+  system.caps[0].more = {"hole"};
+  system.bodies = {{"part", {"skin", "window", "foot", "side"}, 1.0, {}}};
+  cut(system, 3);
+  const films::FilmComplex start = start::build_start(system, 0.1);
+  for (const Finding& finding :
+       check_surface(films::body_surface(start, start.bodies[0]))) {
+    EXPECT_EQ(finding.kind, FindingKind::Degenerate);  // of the hull's facets
+  }
+  const double area = std::numbers::pi * (0.25 / 4.0 - 0.0144 / 2.0);
+  EXPECT_NEAR(surface_area(start.mesh, start.mesh.label_of("foot")) / area, 1.0,
+              kChords);
+}
+
+// A film beside the tube ends at a solid in the plane, which holds it.
+TEST(CutFilms, SolidsInThePlaneStay) {
+  constexpr double kChords = 0.02;
+  films::FilmSystem system = tube(4.0);
+  const curves::Circle near{Vec3(0, 0, -4), Vec3::UnitX(), 0.5};
+  const curves::Circle far{Vec3(-2, 0, -4), -Vec3::UnitX(), 0.5};
+  system.curves.push_back({"near", near});
+  system.curves.push_back({"far", far});
+  system.films.push_back({"arm", films::FilmKind::Loft, {"near", "far"}});
+  system.caps.push_back({"pad", "near"});
+  system.caps.push_back({"end", "far"});
+  system.bodies.push_back({"other", {"arm", "pad", "end"}, 1.5, {}});
+  cut(system, 1);
+  const films::FilmComplex start = start::build_start(system, 0.15);
+  for (const films::ComplexBody& body : start.bodies) {
+    EXPECT_THAT(check_surface(films::body_surface(start, body)), IsEmpty());
+  }
+  EXPECT_NEAR(surface_area(start.mesh, start.mesh.label_of("pad")),
+              0.25 * std::numbers::pi, kChords);
+  for (const films::ComplexEdge& mark : start.edges) {
+    const Vec3& a = start.mesh.points[mark.a];
+    EXPECT_GT(a.z(), -1.0) << "an edge of the held film slides at "
+                           << a.transpose();
   }
 }
 

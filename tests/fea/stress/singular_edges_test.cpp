@@ -91,6 +91,25 @@ TEST_P(OfBrick, ATurnIntoTheMaterialIs) {
   }
 }
 
+/// In a plane of symmetry edges are those of the whole.
+TEST_P(OfBrick, PlanesOfSymmetryHaveTheWholesEdges) {
+  const auto edges = stress::singular_edges(mesh_, held(mesh_, "x0"), {0.3},
+                                            held(mesh_, "y0"));
+  EXPECT_EQ(edges.size(), 9U);  // the clamp goes on beyond y0
+  TetMesh mesh = mesh_;
+  for (Vec3& p : mesh.nodes) {
+    p.z() += 0.6 * p.x();
+  }
+  const std::vector<char> none = held(mesh, "no such surface");
+  const auto grooves =
+      stress::singular_edges(mesh, none, {0.3}, held(mesh, "x0"));
+  ASSERT_EQ(grooves.size(), 3U);  // across the top, 121 degrees each side
+  for (const stress::SingularEdge& edge : grooves) {
+    EXPECT_NEAR(edge.angle, std::numbers::pi + 2.0 * std::atan(0.6), 1e-9);
+    EXPECT_EQ(edge.order, stress::groove_order(edge.angle));
+  }
+}
+
 TEST_P(OfBrick, TheirLargestPeakGrowsByItsOrder) {
   const auto edges = stress::singular_edges(mesh_, held(mesh_, "x0"), {0.3});
   const elastic::ElasticModel model(mesh_, {parts::steel()},

@@ -13,6 +13,7 @@
 namespace meniscus::case_symmetry_test {
 namespace {
 
+using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -116,6 +117,23 @@ TEST(CaseSymmetry, CurvesBeyondAPlaneAreToldWithTheirLines) {
                  "body 'part' is not closed at curve 'base'");
 }
 
+// A hole's rim, which no film holds, would meet its image there too.
+TEST(CaseSymmetry, SmoothRimsThatTouchAPlaneAreTold) {
+  std::string text = changed(half(), "curve = \"head\"",
+                             "curve = \"head\"\nholes = [\"hole\"]");
+  text = changed(text, "[films.skin]",
+                 "[curves.hole]\nkind = \"circle\"\n"
+                 "center = [0, 2, \"length\"]\nnormal = [0, 0, 1]\n"
+                 "radius = 3\n\n[solids.plug]\nkind = \"cap\"\n"
+                 "curve = \"hole\"\n\n[films.skin]");
+  text = changed(text, "[\"skin\", ", "[\"skin\", \"plug\", ");
+  const std::string plane = "normal = [0, 0, -1] }";
+  text =
+      changed(text, plane, plane + ", { at = [0, 5, 0], normal = [0, 1, 0] }");
+  EXPECT_THAT(problems_of(text),
+              Contains(HasSubstr("curve 'hole' touches plane 2 of symmetry")));
+}
+
 /// The whole strut, which a plane along its axis cuts; the force lies in it.
 std::string cut_strut() {
   std::string text = changed(strut(), "[curves.base]",
@@ -157,6 +175,27 @@ TEST(CaseSymmetry, CurvesThatAPlaneCutsWronglyAreTold) {
   expect_problem(
       changed(cut_strut(), head, "center = [0, \"foot - 50\", \"length\"]"),
       "curve 'head' is 2 beyond plane 1 of symmetry");
+}
+
+TEST(CaseSymmetry, CurvesThatPassAPlaneMoreThanTwiceAreToldSo) {
+  const std::string head =
+      "kind = \"circle\"\ncenter = [0, 0, \"length\"]\nnormal = [0, 0, "
+      "1]\nradius = 20";
+  expect_problem(
+      changed(cut_strut(), head,
+              "kind = \"polygon\"\npoints = [[-20, -20, 60], [20, -20, 60], "
+              "[20, 20, 60], [10, 20, 60], [10, -10, 60], [-10, -10, 60], "
+              "[-10, 20, 60], [-20, 20, 60]]"),
+      "curve 'head' passes plane 1 of symmetry at 4 places of its own; "
+      "expected two");
+}
+
+TEST(CaseSymmetry, CurvesThatHoldNothingMayCrossAPlane) {
+  EXPECT_THAT(problems_of(changed(cut_strut(), "[films.skin]",
+                                  "[curves.pattern]\nkind = \"circle\"\n"
+                                  "center = [0, 3, 9]\nnormal = [0, 0, 1]\n"
+                                  "radius = 5\n\n[films.skin]")),
+              IsEmpty());
 }
 
 TEST(CaseSymmetry, LoadsOnWhatAPlaneCutsHaveHalvesOfTheWholes) {

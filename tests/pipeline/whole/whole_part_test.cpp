@@ -163,6 +163,31 @@ TEST(WholePart, MovesAndIsStressedAsItsImages) {
   }
 }
 
+// Recovered from one side, it is not 0 there.
+TEST(WholePart, HasNoShearAcrossItsPlanes) {
+  const TetMesh& mesh = solved().whole.mesh;
+  const stress::StressField stress =
+      stress::nodal_stress(mesh, solved().whole.stresses[0].recovered);
+  const double most =
+      *std::max_element(stress.von_mises.begin(), stress.von_mises.end());
+  int in_planes = 0;
+  for (std::size_t n = 0; n < mesh.nodes.size(); ++n) {
+    const element::Stress& s = stress.nodal[n];  // xx yy zz xy yz zx
+    const Vec3& p = mesh.nodes[n];
+    if (std::abs(p.x()) < kRounding) {
+      ++in_planes;
+      EXPECT_NEAR(s[3] / most, 0.0, kRounding) << p.transpose();
+      EXPECT_NEAR(s[5] / most, 0.0, kRounding) << p.transpose();
+    }
+    if (std::abs(p.y()) < kRounding) {
+      ++in_planes;
+      EXPECT_NEAR(s[3] / most, 0.0, kRounding) << p.transpose();
+      EXPECT_NEAR(s[4] / most, 0.0, kRounding) << p.transpose();
+    }
+  }
+  EXPECT_GT(in_planes, 100);
+}
+
 Vec3 sum_of(const VectorX& forces) {
   Vec3 sum = Vec3::Zero();
   for (Eigen::Index n = 0; n < forces.size(); n += 3) {
