@@ -178,7 +178,8 @@ void check_held_loads(const Case& input, const EvaluatedCase& inputs,
       // Of several forces there: along all that any pushes.
       Vec3 push = Vec3::Zero();
       for (const loads::SurfaceForce& force : load_case.forces) {
-        if (load.kind == LoadKind::Force && force.surfaces == load.surfaces) {
+        if (load.kind == LoadKind::Force &&
+            are_same_surfaces(force.surfaces, load.surfaces)) {
           push += force.total.cwiseAbs();
         }
       }

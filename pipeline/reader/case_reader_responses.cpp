@@ -247,15 +247,15 @@ void read_facing(CaseContext& context, const CaseTable& table,
     context.problems.add(
         table.line("angle"),
         fmt::format("{}.angle is {:g} degrees; expected one above 0 and below "
-                    "90",
-                    table.path(), response.angle / kDegree));
+                    "90, with its unit, as \"{:g} deg\"",
+                    table.path(), response.angle / kDegree, usual / kDegree));
   } else if (!(response.width > 0.0) || !(response.width < response.angle)) {
     context.problems.add(
         table.line("width"),
         fmt::format("{}.width is {:g} degrees; expected a part of the angle, "
-                    "{:g} degrees",
+                    "{:g} degrees, with its unit, as \"{:.3g} deg\"",
                     table.path(), response.width / kDegree,
-                    response.angle / kDegree));
+                    response.angle / kDegree, part * response.angle / kDegree));
   }
   const std::vector<std::string> known = case_data::surface_names(result);
   response.base = table.names("base");
