@@ -369,6 +369,34 @@ void check_fillets(const Case& input, const EvaluatedCase& initial,
   }
 }
 
+/// The mesh along a curve is as fine as its fillet is small, refine_curves().
+void check_small_fillets(const Case& input, const EvaluatedCase& inputs,
+                         CaseProblems& problems) {
+  constexpr double kDear = 1000.0;  // edges around: half a million elements
+  constexpr double kMost = 20000.0;
+  for (const films::FilletSpec& fillet : inputs.film_system.fillets) {
+    const auto entry = std::find_if(
+        input.fillets.begin(), input.fillets.end(),
+        [&](const FilletEntry& e) { return e.name == fillet.name; });
+    const auto curve = std::find_if(
+        inputs.film_system.curves.begin(), inputs.film_system.curves.end(),
+        [&](const curves::Curve& c) { return c.name == fillet.curve; });
+    const double edges = 3.0 * curves::length_of(curve->shape) / fillet.radius;
+    if (!(fillet.radius > 0.0) || !(edges > kDear)) {
+      continue;
+    }
+    const std::string text = fmt::format(
+        "{} is {:.4g}: edges of a third of it go {:.2g} times around '{}'; "
+        "make it larger, or leave so small a fillet out",
+        entry->radius.key, fillet.radius, edges, fillet.curve);
+    if (edges > kMost) {
+      problems.add(entry->radius.line, text);
+    } else {
+      problems.warn(entry->radius.line, text);
+    }
+  }
+}
+
 /// The case's numbers at the initial design and, one variable at a time, at
 /// the ends of the bounds.
 void check_numbers(const Case& input, CaseProblems& problems) {
@@ -382,6 +410,7 @@ void check_numbers(const Case& input, CaseProblems& problems) {
   };
   const VectorX initial = initial_design(input);
   const EvaluatedCase inputs = at(initial, "");
+  check_small_fillets(input, inputs, problems);
   if (!problems.empty()) {
     return;
   }

@@ -126,8 +126,17 @@ TEST(FilletRun, TellsWhatDoesNotFitWithItsLine) {
   const forward::ForwardModel model(input);
   const forward::Evaluation large = model.evaluate(design_of(12.0));
   ASSERT_TRUE(large.failure);
-  EXPECT_THAT(large.failure->message,
-              HasSubstr("a ball of radius 12 does not fit in the corner"));
+  EXPECT_EQ(large.failure->kind, FailureKind::SurfaceInvalid);
+  EXPECT_THAT(
+      large.failure->message,
+      AllOf(HasSubstr(kFilletLine),
+            HasSubstr("a ball of radius 12 does not fit in the corner")));
+  const forward::ForwardModel huge(
+      case_of(changed(rod_on_plate(), "radius = \"fillet\"", "radius = 1e6")));
+  ASSERT_TRUE(huge.failure());
+  EXPECT_THAT(huge.failure()->message,
+              AllOf(HasSubstr(kFilletLine),
+                    HasSubstr("radius 1e+06 has no room in a part of size")));
 }
 
 TEST(FilletRun, RefusesWhatItCannotRound) {
@@ -147,6 +156,10 @@ TEST(FilletRun, RefusesWhatItCannotRound) {
   EXPECT_THAT(problems_of(changed(rod_on_plate(), fillet,
                                   "curves = [\"foot\"]\nradius = -1")),
               ElementsAre(HasSubstr("0 or above")));
+  EXPECT_THAT(problems_of(changed(rod_on_plate(), fillet,
+                                  "curves = [\"foot\"]\nradius = 1e-3")),
+              ElementsAre(AllOf(HasSubstr("case.toml:46: "),
+                                HasSubstr("go 1.5e+05 times around 'foot'"))));
 }
 
 /// Two rods on the plate, which grow and may move.
