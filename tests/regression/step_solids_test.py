@@ -324,6 +324,16 @@ direction = [0, 0.3, 1]
                          ["top", "face_2", "face_9", "face_4", "face_5",
                           "face_6"])
 
+    def test_a_solid_thinner_than_its_edges(self):
+        """A slice off a cylinder: where edges are long its faces are one plane."""
+        self.make("Cylinder(1) = {0, 0, 0, 0, 0, 4, 10};\n"
+                  "Box(2) = {-5, 9.8, -1, 10, 5, 6};\n"
+                  "BooleanIntersection(3) = { Volume{1}; Delete; }"
+                  "{ Volume{2}; Delete; };")
+        self.refuse(self.write(fea=6.0), "^enclosed_by",
+                    "encloses no volume", "shorten resolution.fea")
+        self.expect(self.call("check", self.write(fea=0.5)), 0)
+
     def test_files_that_are_no_solid(self):
         self.draw("Box(1) = {0, 0, 0, 1, 1, 1}; Box(2) = {3, 0, 0, 1, 1, 1};")
         self.refuse(self.write(), "^file", "2 solids")
