@@ -186,10 +186,12 @@ void check_held_loads(const Case& input, const EvaluatedCase& inputs,
       if (push.isZero(0.0)) {
         push.setOnes();
       }
-      if (std::all_of(load.surfaces.begin(), load.surfaces.end(),
-                      [&](const std::string& surface) {
-                        return is_held(load_case, surface, push);
-                      })) {
+      const auto held = [&](const std::string& surface) {
+        return is_held(load_case, surface, push);
+      };
+      // A bolt whose head is on what is held still pulls at its thread.
+      if (std::all_of(load.surfaces.begin(), load.surfaces.end(), held) &&
+          std::all_of(load.thread.begin(), load.thread.end(), held)) {
         problems.warn(
             load.line,
             fmt::format("the load on '{}' moves nothing: load case '{}' holds "

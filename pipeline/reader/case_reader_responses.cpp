@@ -123,6 +123,20 @@ case_data::Quantity read_value(CaseContext& context, const CaseTable& table,
     context.measures.emplace_back();  // weighted sums of them are usual
   }
   case_data::Quantity value = table.quantity_or_zero("value");
+  for (const int name : value.expression.names_used()) {
+    const std::string& used = context.names[static_cast<std::size_t>(name)];
+    if (static_cast<std::size_t>(name) < own &&
+        std::any_of(result.responses.begin(), result.responses.end(),
+                    [&](const case_data::ResponseEntry& response) {
+                      return response.name == used;
+                    })) {
+      context.problems.warn(
+          value.line,
+          fmt::format("{} takes '{}' of the case, not the response of that "
+                      "name; call one of the two otherwise",
+                      value.key, used));
+    }
+  }
   std::vector<Measure> measures = context.measures;
   context.names.resize(own);
   context.measures.resize(own);
