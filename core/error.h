@@ -58,7 +58,8 @@ enum class FailureKind {
   FilmUnstable,      // equilibrium found, but the Hessian has negative index
   FilmPinched,       // a neck closes or has closed
   FilmNotFound,      // no equilibrium of this topology found
-  SurfaceInvalid,    // the closed surface crosses itself or is not closed
+  SurfaceInvalid,    // the closed surface crosses itself or is not closed, or
+                     // a fillet has no room on it
   MeshingFailed,     // the tetrahedral mesher found no mesh or a poor one
   ElementsInverted,  // mesh motion inverted an element
   SolverFailed,      // elasticity did not converge or is singular

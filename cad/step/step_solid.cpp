@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include <BRepAdaptor_Curve.hxx>
 #include <BRepAdaptor_Surface.hxx>
@@ -55,14 +56,18 @@ class ShapeReader {
       shape_.edges.push_back(edge_of(TopoDS::Edge(edges_(k))));
     }
     std::map<std::string, int> known;
+    std::set<std::string> numbers;  // "face_7" is the seventh
     for (int k = 1; k <= faces_.Extent(); ++k) {
       ++known[file_.name_of(faces_(k))];
+      numbers.insert(fmt::format("face_{}", k));
     }
     for (int k = 1; k <= faces_.Extent(); ++k) {
       const std::string name = file_.name_of(faces_(k));
-      shape_.faces.push_back(face_of(
-          TopoDS::Face(faces_(k)),
-          name.empty() || known[name] > 1 ? fmt::format("face_{}", k) : name));
+      const std::string number = fmt::format("face_{}", k);
+      const bool own =
+          !name.empty() && known[name] == 1 && !numbers.contains(name);
+      shape_.faces.push_back(
+          face_of(TopoDS::Face(faces_(k)), own ? name : number));
     }
     require_closed();
     return std::move(shape_);

@@ -226,10 +226,16 @@ class Bands {
       }
     }
     const double size = bounding_diagonal(x_);
+    if (!(kLeastTouch * spec_.radius < size)) {
+      refuse(fmt::format(
+          "radius {:.4g} has no room in a part of size {:.4g}; make it smaller",
+          spec_.radius, size));
+    }
     if (!(touch_most < size)) {
       refuse(fmt::format(
           "no ball of radius {:.4g} fits between '{}' and '{}' at {}: there "
-          "they nearly lie on each other",
+          "they nearly lie on each other; open the angle between them, or "
+          "leave the fillet out",
           spec_.radius, surface_.labels[sides_.a], surface_.labels[sides_.b],
           place_text(where)));
     }

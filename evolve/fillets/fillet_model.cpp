@@ -68,16 +68,22 @@ Corner<double> corner_at(const FilletBands& bands, const Profile& profile,
                            film[profile.after] - film[profile.before], radius);
 }
 
-Contact contact_at(const FilletBands& bands, const Corner<double>& corner) {
+/// Whether the model is being frozen, or asked of a design.
+enum class At { Freeze, Design };
+
+Contact contact_at(const FilletBands& bands, const Corner<double>& corner,
+                   At at) {
   const std::optional<Contact> contact = find_contact(corner);
   if (!contact) {
     const Vec3& p = corner.a.nodes[0];
     throw InvalidInput(fmt::format(
         "fillet '{}': a ball of radius {:.4g} does not fit in the corner at "
-        "({:.4g}, {:.4g}, {:.4g}) of curve '{}'; a model frozen nearer to this "
-        "design may reach further, else make the radius smaller or the "
-        "surfaces beside it wider",
-        bands.name, corner.radius, p.x(), p.y(), p.z(), bands.curve));
+        "({:.4g}, {:.4g}, {:.4g}) of curve '{}'; {}make the radius smaller or "
+        "the surfaces beside it wider",
+        bands.name, corner.radius, p.x(), p.y(), p.z(), bands.curve,
+        at == At::Freeze
+            ? ""
+            : "a model frozen nearer to this design may reach further, else "));
   }
   return *contact;
 }
@@ -147,7 +153,8 @@ FilletModel::FilletModel(const SurfaceMesh& surface,
     for (Profile& profile : bands_[k].profiles) {
       const Corner<double> corner = corner_at(
           bands_[k], profile, surface.points, system.fillets[k].radius);
-      const RollingArc<double> arc(corner, contact_at(bands_[k], corner));
+      const RollingArc<double> arc(corner,
+                                   contact_at(bands_[k], corner, At::Freeze));
       profile.arc_a = arc.arc_length(true);
       profile.arc_b = arc.arc_length(false);
     }
@@ -161,7 +168,8 @@ Points FilletModel::rounded(const Points& film,
     const double radius = radius_of(bands_[k], system, k);
     for (const Profile& profile : bands_[k].profiles) {
       const Corner<double> corner = corner_at(bands_[k], profile, film, radius);
-      const RollingArc<double> arc(corner, contact_at(bands_[k], corner));
+      const RollingArc<double> arc(corner,
+                                   contact_at(bands_[k], corner, At::Design));
       result[profile.point] += arc.rim_move();
       for (const Follower& follower : profile.followers) {
         result[follower.point] +=
@@ -189,7 +197,7 @@ FilletGradient FilletModel::transpose(const Points& film,
       const RollingArc<Dual> arc(
           corner_of<Dual>(bands_[k], profile, x, variable(at.along, 3 * kNodes),
                           Dual(radius, kNumbers, kNumbers - 1)),
-          contact_at(bands_[k], at));
+          contact_at(bands_[k], at, At::Design));
       const Rates rates = worth(arc, profile, by_rounded).derivatives();
       spread(profile, rates, result.film);
       result.radius[static_cast<Eigen::Index>(k)] += rates[kNumbers - 1];

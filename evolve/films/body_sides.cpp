@@ -188,7 +188,9 @@ void turn_parts(const FilmComplex& complex, const ComplexBody& body,
     if (first == complex.mesh.facet_label.end() ||
         !(std::abs(volume) > 1e-12 * size * size * size)) {
       throw InvalidInput(fmt::format(
-          "body '{}' encloses no volume; its surfaces lie on each other",
+          "body '{}' encloses no volume: its surfaces lie on each other, or "
+          "are closer than an edge is long; move them apart, or shorten "
+          "resolution.fea",
           body.name));
     }
     const Triangle& t =

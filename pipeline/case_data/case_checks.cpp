@@ -178,17 +178,20 @@ void check_held_loads(const Case& input, const EvaluatedCase& inputs,
       // Of several forces there: along all that any pushes.
       Vec3 push = Vec3::Zero();
       for (const loads::SurfaceForce& force : load_case.forces) {
-        if (load.kind == LoadKind::Force && force.surfaces == load.surfaces) {
+        if (load.kind == LoadKind::Force &&
+            are_same_surfaces(force.surfaces, load.surfaces)) {
           push += force.total.cwiseAbs();
         }
       }
       if (push.isZero(0.0)) {
         push.setOnes();
       }
-      if (std::all_of(load.surfaces.begin(), load.surfaces.end(),
-                      [&](const std::string& surface) {
-                        return is_held(load_case, surface, push);
-                      })) {
+      const auto held = [&](const std::string& surface) {
+        return is_held(load_case, surface, push);
+      };
+      // A bolt whose head is on what is held still pulls at its thread.
+      if (std::all_of(load.surfaces.begin(), load.surfaces.end(), held) &&
+          std::all_of(load.thread.begin(), load.thread.end(), held)) {
         problems.warn(
             load.line,
             fmt::format("the load on '{}' moves nothing: load case '{}' holds "
@@ -368,6 +371,34 @@ void check_fillets(const Case& input, const EvaluatedCase& initial,
   }
 }
 
+/// The mesh along a curve is as fine as its fillet is small, refine_curves().
+void check_small_fillets(const Case& input, const EvaluatedCase& inputs,
+                         CaseProblems& problems) {
+  constexpr double kDear = 1000.0;  // edges around: half a million elements
+  constexpr double kMost = 20000.0;
+  for (const films::FilletSpec& fillet : inputs.film_system.fillets) {
+    const auto entry = std::find_if(
+        input.fillets.begin(), input.fillets.end(),
+        [&](const FilletEntry& e) { return e.name == fillet.name; });
+    const auto curve = std::find_if(
+        inputs.film_system.curves.begin(), inputs.film_system.curves.end(),
+        [&](const curves::Curve& c) { return c.name == fillet.curve; });
+    const double edges = 3.0 * curves::length_of(curve->shape) / fillet.radius;
+    if (!(fillet.radius > 0.0) || !(edges > kDear)) {
+      continue;
+    }
+    const std::string text = fmt::format(
+        "{} is {:.4g}: edges of a third of it go {:.2g} times around '{}'; "
+        "make it larger, or leave so small a fillet out",
+        entry->radius.key, fillet.radius, edges, fillet.curve);
+    if (edges > kMost) {
+      problems.add(entry->radius.line, text);
+    } else {
+      problems.warn(entry->radius.line, text);
+    }
+  }
+}
+
 /// The case's numbers at the initial design and, one variable at a time, at
 /// the ends of the bounds.
 void check_numbers(const Case& input, CaseProblems& problems) {
@@ -381,6 +412,7 @@ void check_numbers(const Case& input, CaseProblems& problems) {
   };
   const VectorX initial = initial_design(input);
   const EvaluatedCase inputs = at(initial, "");
+  check_small_fillets(input, inputs, problems);
   if (!problems.empty()) {
     return;
   }

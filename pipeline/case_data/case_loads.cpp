@@ -41,7 +41,7 @@ loads::SurfaceTraction traction_of(const LoadEntry& load,
 void add_pin(const loads::Surfaces& surfaces, loads::LoadCase& result) {
   if (std::none_of(result.pins.begin(), result.pins.end(),
                    [&](const loads::RigidPin& pin) {
-                     return pin.surfaces == surfaces;
+                     return are_same_surfaces(pin.surfaces, surfaces);
                    })) {
     result.pins.push_back({.surfaces = surfaces});
   }
@@ -217,6 +217,10 @@ element::Material material_of(const Case& input, const MaterialEntry& entry,
     }
   }
   return material;
+}
+
+bool are_same_surfaces(const loads::Surfaces& a, const loads::Surfaces& b) {
+  return std::is_permutation(a.begin(), a.end(), b.begin(), b.end());
 }
 
 loads::LoadCase load_case_of(const LoadCaseEntry& entry,

@@ -12,6 +12,9 @@ element::Material material_of(const Case& input, const MaterialEntry& entry,
 loads::LoadCase load_case_of(const LoadCaseEntry& entry,
                              const CaseValues& values);
 
+/// The same surfaces, in any order.
+bool are_same_surfaces(const loads::Surfaces& a, const loads::Surfaces& b);
+
 /// Some load or enforced displacement of it is not 0 (expressions of the place
 /// count as loads).
 bool is_loaded(const loads::LoadCase& load_case);

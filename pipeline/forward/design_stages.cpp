@@ -7,6 +7,7 @@
 #include "evolve/energy/constrained_hessian.h"
 #include "mesh_tet/motion_check.h"
 #include "mesh_tet/quadratic.h"
+#include "pipeline/forward/fillets.h"
 #include "pipeline/forward/frozen_part.h"
 #include "pipeline/forward/planes_kept.h"
 #include "pipeline/forward/walls.h"
@@ -79,8 +80,11 @@ bool move_mesh(const FrozenPart& part, StagedDesign& staged) {
   QuadraticSurface& surface = staged.fields.surface;
   try {
     surface = part.surface(staged.fields.inputs, staged.adjoint.film.points);
-  } catch (const InvalidInput& error) {  // a thickness that is not above 0
-    result.failure = Failure{FailureKind::NotANumber, error.what()};
+  } catch (const InvalidInput& error) {
+    // A ball that does not fit, or a thickness that is not above 0.
+    result.failure = part.fillets
+                         ? fillet_failure(part.input, error)
+                         : Failure{FailureKind::NotANumber, error.what()};
     return false;
   }
   TetMesh& mesh = staged.fields.mesh;

@@ -28,10 +28,15 @@ std::optional<fillets::FilletModel> fillet_model(
   try {
     return fillets::FilletModel::freeze(model, inputs.film_system, points);
   } catch (const InvalidInput& error) {
-    failure = Failure{FailureKind::SurfaceInvalid,
-                      line_of(input, error.what()) + error.what()};
+    failure = fillet_failure(input, error);
   }
   return std::nullopt;
+}
+
+Failure fillet_failure(const case_data::Case& input,
+                       const InvalidInput& error) {
+  return {FailureKind::SurfaceInvalid,
+          line_of(input, error.what()) + error.what()};
 }
 
 Points rounded_anew(const films::FilmSystem& system,

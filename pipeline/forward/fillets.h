@@ -18,6 +18,9 @@ std::optional<fillets::FilletModel> fillet_model(
     const frozen::FilmModel& model, const Points& points,
     std::optional<Failure>& failure);
 
+/// That a fillet does not fit, with the line of `input`.
+Failure fillet_failure(const case_data::Case& input, const InvalidInput& error);
+
 /// The film's points with fillets that are made anew there; without fillets the
 /// points. Throws InvalidInput where one does not fit.
 Points rounded_anew(const films::FilmSystem& system,

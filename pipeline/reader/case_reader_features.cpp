@@ -79,8 +79,16 @@ void read_boss(CaseContext& context, const CaseTable& table,
                       key));
     }
   }
-  if (boss.rims.size() == 1 &&
-      boss.rims.front().place != case_data::FeatureRim::Place::Base) {
+  using Place = case_data::FeatureRim::Place;
+  if (boss.rims.size() == 2 && (boss.rims[0].place == Place::Seat ||
+                                boss.rims[1].place == Place::Base)) {
+    context.problems.add(
+        table.line("rims"),
+        fmt::format("{}.rims go from the base to the seat: the second must be "
+                    "higher, as in [\"base\", \"seat\"]",
+                    table.path()));
+  }
+  if (boss.rims.size() == 1 && boss.rims.front().place != Place::Base) {
     context.problems.add(
         table.line("rims"),
         fmt::format("{}.rims names one rim, which must be \"base\": there the "

@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 
 #include "pipeline/case_data/case_checks.h"
+#include "pipeline/case_data/case_loads.h"
 #include "pipeline/reader/case_reader_tables.h"
 
 namespace meniscus::reader {
@@ -175,7 +176,7 @@ void check_pins(CaseContext& context,
         const loads::Surfaces& other = uses[b].surfaces;
         const bool shared =
             std::find(other.begin(), other.end(), surface) != other.end();
-        if (shared && (other != uses[a].surfaces ||
+        if (shared && (!case_data::are_same_surfaces(other, uses[a].surfaces) ||
                        (uses[a].support && uses[b].support))) {
           context.problems.add(
               uses[a].line,
@@ -335,7 +336,7 @@ Cone read_cone(CaseContext& context, const CaseTable& table) {
   if (!(cone.half_angle >= 0.0 && cone.half_angle <= kHalfTurn)) {
     note(context, table, "within",
          fmt::format("is {:g} degrees; expected the angle between the load and "
-                     "'about', from 0 to 180",
+                     "'about', from 0 to 180, with its unit, as \"30 deg\"",
                      cone.half_angle * 180.0 / kHalfTurn));
   }
   const Vec3 axis = table.constant_vector("about").value_or(Vec3::UnitZ());
@@ -544,13 +545,18 @@ TableSpec load_table() {
 
 namespace {
 
+bool is_of_wall(const case_data::Case& input, const std::string& film) {
+  return std::any_of(input.walls.begin(), input.walls.end(),
+                     [&](const case_data::WallEntry& wall) {
+                       return std::find(wall.films.begin(), wall.films.end(),
+                                        film) != wall.films.end();
+                     });
+}
+
 /// A wall's sides by where they lie: FILM/outside is FILM, FILM/inside its
 /// back, for walls are turned so that their normals point outside.
 std::string without_side(const std::string& surface,
-                         const std::vector<std::string>& known) {
-  const auto is_known = [&](const std::string& name) {
-    return std::find(known.begin(), known.end(), name) != known.end();
-  };
+                         const case_data::Case& input) {
   for (const auto& [side, ending] :
        {std::pair<std::string, std::string>("/inside", "/back"),
         std::pair<std::string, std::string>("/outside", "")}) {
@@ -558,7 +564,7 @@ std::string without_side(const std::string& surface,
         surface.ends_with(side)
             ? surface.substr(0, surface.size() - side.size())
             : "";
-    if (!film.empty() && !is_known(surface) && is_known(film + "/back")) {
+    if (is_of_wall(input, film)) {
       return film + ending;
     }
   }
@@ -566,21 +572,15 @@ std::string without_side(const std::string& surface,
 }
 
 /// The other way around, for messages: sides of walls by where they lie.
-std::vector<std::string> with_sides(std::vector<std::string> known) {
+std::vector<std::string> with_sides(std::vector<std::string> known,
+                                    const case_data::Case& input) {
   constexpr std::string_view kBack = "/back";
-  std::vector<std::string> films;
-  for (const std::string& name : known) {
-    if (name.ends_with(kBack)) {
-      films.push_back(name.substr(0, name.size() - kBack.size()));
-    }
-  }
   for (std::string& name : known) {
-    for (const std::string& film : films) {
-      if (name == film) {
-        name += "/outside";
-      } else if (name == film + std::string(kBack)) {
-        name = film + "/inside";
-      }
+    if (is_of_wall(input, name)) {
+      name += "/outside";
+    } else if (name.ends_with(kBack)) {  // a lug has one, too
+      const std::string film = name.substr(0, name.size() - kBack.size());
+      name = is_of_wall(input, film) ? film + "/inside" : name;
     }
   }
   return known;
@@ -595,7 +595,7 @@ std::string known_surface(CaseContext& context, const CaseTable& table,
                           const case_data::Case& result, const char* key,
                           std::string surface) {
   const std::vector<std::string> known = case_data::surface_names(result);
-  surface = without_side(surface, known);
+  surface = without_side(surface, result);
   int bodies = 0;
   int solid = 0;
   for (const case_data::BodyEntry& body : result.bodies) {
@@ -611,7 +611,7 @@ std::string known_surface(CaseContext& context, const CaseTable& table,
   }
   if (std::find(known.begin(), known.end(), surface) == known.end()) {
     context.problems.unknown(table.line(key), "surface", surface,
-                             with_sides(known));
+                             with_sides(known, result));
   } else if (context.bodies_good && solid == 0) {
     context.problems.add(
         table.line(key),

@@ -123,6 +123,20 @@ case_data::Quantity read_value(CaseContext& context, const CaseTable& table,
     context.measures.emplace_back();  // weighted sums of them are usual
   }
   case_data::Quantity value = table.quantity_or_zero("value");
+  for (const int name : value.expression.names_used()) {
+    const std::string& used = context.names[static_cast<std::size_t>(name)];
+    if (static_cast<std::size_t>(name) < own &&
+        std::any_of(result.responses.begin(), result.responses.end(),
+                    [&](const case_data::ResponseEntry& response) {
+                      return response.name == used;
+                    })) {
+      context.problems.warn(
+          value.line,
+          fmt::format("{} takes '{}' of the case, not the response of that "
+                      "name; call one of the two otherwise",
+                      value.key, used));
+    }
+  }
   std::vector<Measure> measures = context.measures;
   context.names.resize(own);
   context.measures.resize(own);
@@ -247,15 +261,15 @@ void read_facing(CaseContext& context, const CaseTable& table,
     context.problems.add(
         table.line("angle"),
         fmt::format("{}.angle is {:g} degrees; expected one above 0 and below "
-                    "90",
-                    table.path(), response.angle / kDegree));
+                    "90, with its unit, as \"{:g} deg\"",
+                    table.path(), response.angle / kDegree, usual / kDegree));
   } else if (!(response.width > 0.0) || !(response.width < response.angle)) {
     context.problems.add(
         table.line("width"),
         fmt::format("{}.width is {:g} degrees; expected a part of the angle, "
-                    "{:g} degrees",
+                    "{:g} degrees, with its unit, as \"{:.3g} deg\"",
                     table.path(), response.width / kDegree,
-                    response.angle / kDegree));
+                    response.angle / kDegree, part * response.angle / kDegree));
   }
   const std::vector<std::string> known = case_data::surface_names(result);
   response.base = table.names("base");

@@ -121,9 +121,10 @@ bool is_beyond_reach(const case_data::Case& input,
     return false;
   }
   const FailureKind kind = record.failure->kind;
-  // Iterations have the factor of the freeze's stiffness, and facets the shape
-  // that they have there: both fail far from it.
+  // Iterations have the factor of the freeze's stiffness, facets the shape and
+  // fillets the bands that they have there: all fail far from it.
   return kind == FailureKind::ElementsInverted ||
+         kind == FailureKind::SurfaceInvalid ||
          kind == FailureKind::SolverFailed ||
          (kind == FailureKind::FilmNotFound &&
           design_distance(input, record.inputs, best) <= kClose);

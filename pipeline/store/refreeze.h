@@ -58,8 +58,8 @@ struct FrozenStage {
 };
 
 /// Whether a design failed because of its distance from the model's: its
-/// elements invert, the solver does not converge, or, though it is close to
-/// `best`, the film is not found.
+/// elements invert, a fillet's ball finds no room in its bands, the solver does
+/// not converge, or, though it is close to `best`, the film is not found.
 bool is_beyond_reach(const case_data::Case& input,
                      const EvaluationRecord& record, const VectorX& best);
 

@@ -323,6 +323,14 @@ class Features(ProgramTest):
         self.refuse(through, "a bore through ends in the liquid")
         off = self.changed('"boss/base"]', '"boss/rim"]')
         self.refuse(off, "boss/rim", "boss/base")
+        down = self.changed("depth = 5\n", 'rims = ["seat", "base"]\n')
+        self.refuse(down, self.line(down, "rims ="),
+                    "rims go from the base to the seat")
+        # Its back is a face like others, no side of a wall.
+        side = self.changed('on = "lug/bore", force',
+                            'on = "lug/inside", force')
+        self.refuse(side, self.line(side, "loads ="), "'lug/inside'",
+                    "lug/front, lug/back")
         low = self.changed("[0, 0, \"reach\"]", "[0, 0, \"reach - 55\"]")
         self.refuse(low, self.line(low, "[solids.boss]"),
                     "solids 'lug' and 'boss' overlap near")

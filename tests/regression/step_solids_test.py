@@ -310,6 +310,30 @@ direction = [0, 0.3, 1]
                                surfaces='"plate", "b"'),
                     r"^\[solids.b\]", "'plate' and 'b' overlap near")
 
+    def test_a_face_with_the_number_of_another(self):
+        part = self.draw("Box(1) = {0, 0, 0, 4, 5, 6};")
+        text, count = re.subn(r"(ADVANCED_FACE\(')'", "\\1face_1'",
+                              part.read_text())
+        self.assertEqual(count, 6)
+        names = iter(["top", "face_1", "face_9", "", "", ""])
+        part.write_text(re.sub(r"(?<=ADVANCED_FACE\(')face_1(?=')",
+                               lambda _: next(names), text))
+        case = self.write('open = ["none"]')
+        said = self.call("check", case).stderr
+        self.assertEqual(re.findall(r"(\w+): plane about", said),
+                         ["top", "face_2", "face_9", "face_4", "face_5",
+                          "face_6"])
+
+    def test_a_solid_thinner_than_its_edges(self):
+        """A slice off a cylinder: where edges are long its faces are one plane."""
+        self.make("Cylinder(1) = {0, 0, 0, 0, 0, 4, 10};\n"
+                  "Box(2) = {-5, 9.8, -1, 10, 5, 6};\n"
+                  "BooleanIntersection(3) = { Volume{1}; Delete; }"
+                  "{ Volume{2}; Delete; };")
+        self.refuse(self.write(fea=6.0), "^enclosed_by",
+                    "encloses no volume", "shorten resolution.fea")
+        self.expect(self.call("check", self.write(fea=0.5)), 0)
+
     def test_files_that_are_no_solid(self):
         self.draw("Box(1) = {0, 0, 0, 1, 1, 1}; Box(2) = {3, 0, 0, 1, 1, 1};")
         self.refuse(self.write(), "^file", "2 solids")

@@ -134,6 +134,23 @@ TEST(Bolts, HaveExactGradients) {
       << forward::gradient_check_text(input, check);
 }
 
+TEST(Bolts, OnlyOneWithBothEndsHeldMovesNothing) {
+  const auto warnings = [](const std::string& held) {
+    const std::string pulled = kBar;
+    const std::size_t second = pulled.find("[load_cases.pulled]");
+    const std::string one =
+        pulled.substr(0, second) + pulled.substr(pulled.find("[responses."));
+    return reader::read_case_text(
+               changed(changed(one, "on = \"foot\", fix", held + ", fix"),
+                       "load_case = \"pulled\"", ""),
+               "case.toml")
+        .warnings;
+  };
+  const auto bolt = HasSubstr("the load on 'head' moves nothing");
+  EXPECT_THAT(warnings("on = \"head\""), testing::IsEmpty());
+  EXPECT_THAT(warnings("on = [\"head\", \"foot\"]"), Contains(bolt));
+}
+
 TEST(Bolts, MistakesAreToldByLine) {
   const auto told = [](const char* pattern, const char* wrong) {
     return problems_of(changed(kBar, pattern, wrong));

@@ -126,8 +126,40 @@ TEST(FilletRun, TellsWhatDoesNotFitWithItsLine) {
   const forward::ForwardModel model(input);
   const forward::Evaluation large = model.evaluate(design_of(12.0));
   ASSERT_TRUE(large.failure);
+  EXPECT_EQ(large.failure->kind, FailureKind::SurfaceInvalid);
   EXPECT_THAT(large.failure->message,
-              HasSubstr("a ball of radius 12 does not fit in the corner"));
+              AllOf(HasSubstr(kFilletLine),
+                    HasSubstr("a ball of radius 12 does not fit in the corner"),
+                    HasSubstr("a model frozen nearer to this design")));
+  const forward::ForwardModel huge(
+      case_of(changed(rod_on_plate(), "radius = \"fillet\"", "radius = 1e6")));
+  ASSERT_TRUE(huge.failure());
+  EXPECT_THAT(huge.failure()->message,
+              AllOf(HasSubstr(kFilletLine),
+                    HasSubstr("radius 1e+06 has no room in a part of size")));
+}
+
+/// A waist of radius 8 between two plates, 16 apart.
+std::string waist_between_plates() {
+  std::string text =
+      changed(rod_on_plate(), "[\"20 * tilt\", 0, 20]", "[0, 0, 16]");
+  text = changed(text, "[\"tilt\", 0, 1]", "[0, 0, 1]");
+  text = changed(text, "kind = \"cap\"\ncurve = \"head\"",
+                 "kind = \"flange\"\nat = [0, 0, 16]\naxis = [0, 0, -1]\n"
+                 "radius = 24\nthickness = 5\ncurves = [\"head\"]");
+  text = changed(text, "curves = [\"foot\"]\nradius = \"fillet\"",
+                 "curves = [\"foot\", \"head\"]\nradius = 6.8");
+  text = changed(text, "8^2 * 20 + 24^2 * 5", "0.85 * 8^2 * 16 + 2 * 24^2 * 5");
+  return changed(text, "on = \"end\"", "on = \"end/bottom\"");
+}
+
+// The film bends away from the planes by which room was found.
+TEST(FilletRun, AFreezeDoesNotAdviseAnotherFreeze) {
+  const forward::ForwardModel model(case_of(waist_between_plates()));
+  ASSERT_TRUE(model.failure());
+  EXPECT_THAT(model.failure()->message,
+              AllOf(HasSubstr("a ball of radius 6.8 does not fit"),
+                    HasSubstr("'foot'; make the radius smaller")));
 }
 
 TEST(FilletRun, RefusesWhatItCannotRound) {
@@ -147,6 +179,10 @@ TEST(FilletRun, RefusesWhatItCannotRound) {
   EXPECT_THAT(problems_of(changed(rod_on_plate(), fillet,
                                   "curves = [\"foot\"]\nradius = -1")),
               ElementsAre(HasSubstr("0 or above")));
+  EXPECT_THAT(problems_of(changed(rod_on_plate(), fillet,
+                                  "curves = [\"foot\"]\nradius = 1e-3")),
+              ElementsAre(AllOf(HasSubstr("case.toml:46: "),
+                                HasSubstr("go 1.5e+05 times around 'foot'"))));
 }
 
 /// Two rods on the plate, which grow and may move.

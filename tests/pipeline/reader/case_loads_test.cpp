@@ -138,6 +138,18 @@ TEST(CaseLoads, RigidPinsAndEnforcedDisplacements) {
   EXPECT_EQ(load_case.forces.size(), 1U);
 }
 
+TEST(CaseLoads, APinIsOneWhateverTheOrderOfItsSurfaces) {
+  const loads::LoadCase load_case =
+      numbers_of(
+          with_loads("[{ on = [\"skin\", \"head_pad\"], by = \"rigid\", "
+                     "force = [1, 0, 0] },\n"
+                     "  { on = [\"head_pad\", \"skin\"], by = \"rigid\", "
+                     "force = [0, 1, 0] }]"))
+          .load_cases.at(0);
+  EXPECT_EQ(load_case.pins.size(), 1U);
+  EXPECT_EQ(load_case.forces.size(), 2U);
+}
+
 TEST(CaseLoads, BearingForces) {
   const loads::LoadCase load_case =
       numbers_of(
@@ -266,6 +278,21 @@ INSTANTIATE_TEST_SUITE_P(
                 with_supports("[{ on = \"foot_pad\", fix = \"xy\", "
                               "displacement = [0, 0, 0.2] }]"),
                 "must be 0 where fix does not hold that component"},
+        Mistake{"ConeInDegreesWithoutUnit",
+                with_loads("[{ on = \"skin\", size = 3, within = 30, about = "
+                           "[0, 0, 1] }]"),
+                "from 0 to 180, with its unit, as \"30 deg\""},
+        Mistake{"OverhangInDegreesWithoutUnit",
+                changed(strut(), "[study]",
+                        "[responses.hangs]\nkind = \"overhang\"\ndirection = "
+                        "[0, 0, 1]\nangle = 40\n[study]"),
+                "below 90, with its unit, as \"45 deg\""},
+        Mistake{
+            "WidthBeyondItsAngle",
+            changed(strut(), "[study]",
+                    "[responses.hangs]\nkind = \"overhang\"\ndirection = "
+                    "[0, 0, 1]\nwidth = \"50 deg\"\n[study]"),
+            "a part of the angle, 45 degrees, with its unit, as \"4.5 deg\""},
         Mistake{"ByWhat",
                 with_loads("[{ on = \"head_pad\", by = \"rigit\", force = "
                            "[1, 0, 0] }]"),

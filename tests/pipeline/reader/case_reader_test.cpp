@@ -303,6 +303,22 @@ TEST(CaseReader, WarnsOfLoadsOnWhatIsHeld) {
   EXPECT_THAT(warnings("[0, \"load\", 0]", "xz"), IsEmpty());
 }
 
+TEST(CaseReader, WarnsOfExpressionsThatMissAResponseOfTheSameName) {
+  const auto warnings = [](const std::string& value) {
+    return reader::read_case_text(
+               changed(strut(), "[study]",
+                       "[responses.load]\nkind = \"mass\"\n\n[responses.cost]\n"
+                       "kind = \"expression\"\nvalue = \"" +
+                           value + "\"\n\n[study]"),
+               "case.toml")
+        .warnings;
+  };
+  EXPECT_THAT(warnings("2 * load + sway"),
+              ElementsAre(HasSubstr("responses.cost.value takes 'load' of the "
+                                    "case, not the response of that name")));
+  EXPECT_THAT(warnings("2 * sway"), IsEmpty());
+}
+
 TEST(Overrides, ReachParametersDesignAndKeys) {
   const case_data::Case input = reader::read_case(
       two_arm_path(),

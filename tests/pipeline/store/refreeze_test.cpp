@@ -25,10 +25,11 @@ store::EvaluationRecord answered(int number, double foot,
   return record;
 }
 
-store::EvaluationRecord inverted(int number, double foot) {
+store::EvaluationRecord inverted(
+    int number, double foot, FailureKind kind = FailureKind::ElementsInverted) {
   store::EvaluationRecord record = answered(number, foot);
   record.responses.resize(0);
-  record.failure = Failure{FailureKind::ElementsInverted, "folded"};
+  record.failure = Failure{kind, "folded"};
   return record;
 }
 
@@ -53,6 +54,15 @@ TEST(Refreeze, IsWantedAtTheBestDesignBesideInvertedOnes) {
   EXPECT_EQ(wanted->responses[0], 27.0);
   EXPECT_FALSE(wanted->go_on_from);
   EXPECT_FALSE(found({answered(1, 25.0), answered(2, 27.0)}, 27.0));
+}
+
+TEST(Refreeze, IsWantedBesideFilletsThatTheModelCannotMake) {
+  const auto beside = [](FailureKind kind) {
+    return found(
+        {answered(1, 25.0), answered(2, 27.0), inverted(3, 28.0, kind)}, 27.0);
+  };
+  EXPECT_TRUE(beside(FailureKind::SurfaceInvalid));
+  EXPECT_FALSE(beside(FailureKind::NotANumber));
 }
 
 // The best design is the start, since those nearer to the optimum miss a
