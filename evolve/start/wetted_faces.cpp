@@ -22,7 +22,7 @@ namespace meniscus::start {
 namespace {
 
 constexpr double kInPlane = 1e-9;   // of the rim's size
-constexpr double kNearBent = 0.05;  // of the rim's size, where films begin
+constexpr double kNearBent = 0.15;  // of the rim's size, where films begin
 
 Expression over_place(const std::string& text) {
   return Expression::parse(text, {"x", "y", "z"});

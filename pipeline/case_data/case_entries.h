@@ -110,8 +110,8 @@ struct FilmEntry {
   SourceLine line = 0;
 };
 
-/// The wall of a face that films wet, and the angle that they meet it at, in the
-/// body.
+/// The wall of a face that films wet, and the angle that they meet it at, in
+/// the body.
 struct WettedWall {
   films::WallKind kind = films::WallKind::Plane;
   QuantityVector at, normal;  // of cylinder and cone the axis

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kPlacesOnRim = 16;
 constexpr double kOnWall = 1e-9;       // of the curve's size
-constexpr double kNearWall = 0.05;     // of the same, of walls that are bent
+constexpr double kNearWall = 0.15;     // of the same, of walls that are bent
 constexpr double kSameEnergy = 1e-12;  // of films of one tension, or at 90 deg
 
 /// The films that end at the curves of a wetted face; without those whose

@@ -9,7 +9,7 @@ namespace meniscus::case_data {
 /// The wall of a wetted face and -T cos(contact angle), its energy per area, or
 /// the rate of that; what is wrong with them is told.
 films::FilmWall wall_of(const Case& input, const CapEntry& cap,
-                         const CaseValues& values);
+                        const CaseValues& values);
 
 /// Tells of curves that do not lie on the wall on which their film slides, or,
 /// where it is bent, near it.
