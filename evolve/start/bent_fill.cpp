@@ -40,6 +40,7 @@ struct Map {
   std::function<Vec3(const Vec3&)> from_plane;
   /// Length in the plane over that on the wall; empty: 1.
   std::function<double(const Vec3&)> scale;
+  bool has_apex = false;  // a cone's, at the origin within the face
 };
 
 Vec3 at_about(const films::BentWall& wall, const Vec3& about) {
@@ -157,18 +158,16 @@ Map seen_from(const films::BentWall& sphere, const Vec3& pole) {
           [=](const Vec3& q) { return 1.0 + q.squaredNorm() / (4.0 * r * r); }};
 }
 
-/// The map, and whether the face has the origin of the plane for an apex.
-std::pair<Map, bool> map_of(const films::BentWall& wall,
-                            const std::vector<Points>& loops, double side,
-                            double edge) {
+Map map_of(const films::BentWall& wall, const std::vector<Points>& loops,
+           double side, double edge) {
   if (wall.kind == films::WallKind::Sphere) {
-    return {seen_from(wall, pole_of_face(wall, loops, side)), false};
+    return seen_from(wall, pole_of_face(wall, loops, side));
   }
   const auto turns = std::count_if(
       loops.begin(), loops.end(),
       [&](const Points& loop) { return std::abs(turn_of(wall, loop)) > kPi; });
   if (turns == 0) {
-    return {unrolled(wall, loops), false};
+    return unrolled(wall, loops);
   }
   const bool apex = wall.kind == films::WallKind::Cone && turns == 1;
   if (!apex && turns != 2) {
@@ -176,7 +175,9 @@ std::pair<Map, bool> map_of(const films::BentWall& wall,
         "a face around a cylinder needs two curves around it, and one around a "
         "cone one or two; name them with 'curve' and 'holes'");
   }
-  return {around(wall, loops, edge), apex};
+  Map map = around(wall, loops, edge);
+  map.has_apex = apex;
+  return map;
 }
 
 /// The inner vertex that is nearest to a cone's apex goes there.
@@ -225,7 +226,7 @@ Vec3 pole_of_face(const films::BentWall& sphere,
 SurfaceMesh fill_bent_face(const films::BentWall& wall,
                            const std::vector<Points>& loops, double side,
                            double edge) {
-  const auto [map, has_apex] = map_of(wall, loops, side, edge);
+  const Map map = map_of(wall, loops, side, edge);
   std::vector<Points> flat;
   for (const Points& loop : loops) {
     Points& places = flat.emplace_back();
@@ -258,7 +259,7 @@ SurfaceMesh fill_bent_face(const films::BentWall& wall,
       }
     }
     SurfaceMesh filling = fill_disk(flat[part[0]], holes, longest, wanted);
-    if (has_apex) {
+    if (map.has_apex) {
       put_on_apex(ids.size(), map.to_plane(wall.at), filling);
     }
     for (std::size_t v = ids.size(); v < filling.points.size(); ++v) {

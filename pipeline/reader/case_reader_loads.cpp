@@ -580,7 +580,9 @@ std::vector<std::string> with_sides(std::vector<std::string> known,
       name += "/outside";
     } else if (name.ends_with(kBack)) {  // a lug has one, too
       const std::string film = name.substr(0, name.size() - kBack.size());
-      name = is_of_wall(input, film) ? film + "/inside" : name;
+      if (is_of_wall(input, film)) {
+        name.replace(film.size(), kBack.size(), "/inside");
+      }
     }
   }
   return known;
