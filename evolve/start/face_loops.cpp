@@ -56,6 +56,20 @@ int joined_set(films::FilmComplex& complex, int a, int b) {
   return static_cast<int>(sets.size()) - 1;
 }
 
+void add_filling(const SurfaceMesh& filling, std::vector<int> ids, int label,
+                 films::FilmComplex& complex) {
+  SurfaceMesh& mesh = complex.mesh;
+  for (std::size_t i = ids.size(); i < filling.points.size(); ++i) {
+    ids.push_back(static_cast<int>(mesh.points.size()));
+    mesh.points.push_back(filling.points[i]);
+    complex.vertices.push_back({films::VertexKind::InCap});
+  }
+  for (const Triangle& t : filling.facets) {
+    mesh.facets.push_back({ids[t[0]], ids[t[1]], ids[t[2]]});
+    mesh.facet_label.push_back(label);
+  }
+}
+
 void fill_loops(const std::vector<std::vector<int>>& loops, double edge,
                 bool graded, int label, films::FilmComplex& complex) {
   SurfaceMesh& mesh = complex.mesh;
@@ -75,15 +89,7 @@ void fill_loops(const std::vector<std::vector<int>>& loops, double edge,
     }
     const SurfaceMesh filling =
         fill_face(bounds, edge, graded, complex.surfaces[label].name);
-    for (std::size_t i = ids.size(); i < filling.points.size(); ++i) {
-      ids.push_back(static_cast<int>(mesh.points.size()));
-      mesh.points.push_back(filling.points[i]);
-      complex.vertices.push_back({films::VertexKind::InCap});
-    }
-    for (const Triangle& t : filling.facets) {
-      mesh.facets.push_back({ids[t[0]], ids[t[1]], ids[t[2]]});
-      mesh.facet_label.push_back(label);
-    }
+    add_filling(filling, std::move(ids), label, complex);
   }
 }
 

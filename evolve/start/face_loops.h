@@ -27,6 +27,11 @@ struct FacePlane {
   int set = -1;                 // its constraint set; -1: a solid's own face
 };
 
+/// Adds facets to a surface: `ids` are the vertices of the filling's first
+/// points, the others are new, come last and lie inside.
+void add_filling(const SurfaceMesh& filling, std::vector<int> ids, int label,
+                 films::FilmComplex& complex);
+
 /// Fills faces with triangles of about `edge` [length], their loops in the
 /// direction of the facets; new vertices come last. `graded`: as fill_face().
 /// Throws InvalidInput, naming the surface, for a loop that crosses itself.

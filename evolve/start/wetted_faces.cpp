@@ -415,23 +415,14 @@ SurfaceMesh filling_of(const films::BentWall& wall, const std::string& face,
 void fill_on_wall(const std::vector<std::vector<int>>& loops, double edge,
                   int label, films::FilmComplex& complex) {
   const films::ComplexSurface& face = complex.surfaces[label];
-  SurfaceMesh& mesh = complex.mesh;
-  const SurfaceMesh filling =
-      filling_of(*face.wetted->bent, face.name, places_of(loops, mesh.points),
-                 face.wetted->side, edge);
+  const SurfaceMesh filling = filling_of(*face.wetted->bent, face.name,
+                                         places_of(loops, complex.mesh.points),
+                                         face.wetted->side, edge);
   std::vector<int> ids;
   for (const std::vector<int>& loop : loops) {
     ids.insert(ids.end(), loop.begin(), loop.end());
   }
-  for (std::size_t i = ids.size(); i < filling.points.size(); ++i) {
-    ids.push_back(static_cast<int>(mesh.points.size()));
-    mesh.points.push_back(filling.points[i]);
-    complex.vertices.push_back({films::VertexKind::InCap});
-  }
-  for (const Triangle& t : filling.facets) {
-    mesh.facets.push_back({ids[t[0]], ids[t[1]], ids[t[2]]});
-    mesh.facet_label.push_back(label);
-  }
+  add_filling(filling, std::move(ids), label, complex);
 }
 
 /// The level set of a cap's wall as a constraint set: planes that cut have one
