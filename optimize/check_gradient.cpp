@@ -79,10 +79,12 @@ void check_input(const std::vector<Variable>& variables,
         "responses x {} variables",
         given.rows(), given.cols(), responses.size(), variables.size()));
   }
-  const bool steps_fit =
-      options.steps.size() >= 2 &&
-      std::all_of(options.steps.begin(), options.steps.end(),
-                  [](double h) { return h > 0.0 && h <= 0.25; });
+  const auto fit = [](const std::vector<double>& steps) {
+    return std::all_of(steps.begin(), steps.end(),
+                       [](double h) { return h > 0.0 && h <= 0.25; });
+  };
+  const bool steps_fit = options.steps.size() >= 2 && fit(options.steps) &&
+                         fit(options.finer_steps);
   if (!steps_fit) {
     throw InvalidInput(
         "gradient check: give at least two steps, each in (0, 0.25] of the "
@@ -131,29 +133,42 @@ class Plateau {
   bool reached_ = false;
 };
 
-// One for each value, by variable j. Steps grow until all are reached.
+// One for each value, by variable j. Steps grow until all are reached; where
+// that leaves some, they shrink from the smallest.
 std::vector<Plateau> find_plateaus(Sweep& sweep, std::size_t j, double range,
                                    const GradientCheckOptions& options) {
   constexpr double kWellWithin = 0.1;
   const VectorX& centre = sweep.centre();
   std::vector<Plateau> plateaus(static_cast<std::size_t>(centre.size()));
-  const auto difference = [&](std::size_t step) {
-    return sweep.difference(static_cast<Eigen::Index>(j),
-                            options.steps[step] * range);
+  const auto difference = [&](double step) {
+    return sweep.difference(static_cast<Eigen::Index>(j), step * range);
   };
-  std::size_t k = options.steps.size() - 1;
-  VectorX fine = difference(k);
-  while (k > 0 && !std::all_of(plateaus.begin(), plateaus.end(),
-                               std::mem_fn(&Plateau::reached))) {
-    const VectorX coarse = difference(k - 1);
+  const auto compare = [&](const VectorX& fine, const VectorX& coarse,
+                           double fine_step) {
     for (std::size_t i = 0; i < plateaus.size(); ++i) {
       const auto line = static_cast<Eigen::Index>(i);
-      plateaus[i].compare(fine[line], coarse[line], options.steps[k] * range,
+      plateaus[i].compare(fine[line], coarse[line], fine_step * range,
                           kWellWithin * options.tolerance *
                               size_of(fine[line], centre[line], range));
     }
-    fine = coarse;
-    --k;
+  };
+  const auto all_reached = [&] {
+    return std::all_of(plateaus.begin(), plateaus.end(),
+                       std::mem_fn(&Plateau::reached));
+  };
+  const VectorX finest = difference(options.steps.back());
+  VectorX last = finest;
+  for (std::size_t k = options.steps.size() - 1; k > 0 && !all_reached(); --k) {
+    const VectorX coarse = difference(options.steps[k - 1]);
+    compare(last, coarse, options.steps[k]);
+    last = coarse;
+  }
+  last = finest;
+  for (std::size_t k = 0; k < options.finer_steps.size() && !all_reached();
+       ++k) {
+    const VectorX fine = difference(options.finer_steps[k]);
+    compare(fine, last, options.finer_steps[k]);
+    last = fine;
   }
   return plateaus;
 }

@@ -75,6 +75,35 @@ TEST(CheckGradient, AKinkNearbyDoesNotCondemnTheRightOne) {
   EXPECT_FALSE(check(1.0 + kJump));
 }
 
+/// As the mean distance of thousands of vertices to a rough scan has it: a kink
+/// every 3e-5 of the range, the first 2e-6 beside the design, so that no two of
+/// the usual steps agree.
+TEST(CheckGradient, SmallerStepsAreTriedAmongManyKinks) {
+  constexpr double kSpacing = 3e-5;
+  constexpr double kJump = 1e-3;
+  const auto rough = [](const VectorX& x) {
+    optimize::VectorAnswer answer;
+    const double t = x[0] - 0.5;
+    double value = t;
+    for (int k = 0; k < 400; ++k) {
+      value += kJump * std::max(0.0, t - 2e-6 - k * kSpacing);
+    }
+    answer.values = VectorX::Constant(1, value);
+    return answer;
+  };
+  const auto check = [&](double given, std::vector<double> finer) {
+    return optimize::check_gradient({{"a", 0.5, 0.0, 1.0}}, {"rough"}, rough,
+                                    Eigen::MatrixXd::Constant(1, 1, given),
+                                    {.finer_steps = std::move(finer)})
+        .passed;
+  };
+  const std::vector<double> finer =
+      optimize::GradientCheckOptions{}.finer_steps;
+  EXPECT_FALSE(check(1.0, {}));
+  EXPECT_TRUE(check(1.0, finer));
+  EXPECT_FALSE(check(1.0 + 0.5 * kJump, finer));
+}
+
 /// Values of nine decimals: the smallest steps see slopes 1e-5 off.
 TEST(CheckGradient, LargerStepsAreTriedWhereSmallOnesSeeRounding) {
   const auto rounded = [](const VectorX& x) {
