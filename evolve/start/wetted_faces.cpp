@@ -21,8 +21,7 @@ namespace meniscus::start {
 
 namespace {
 
-constexpr double kInPlane = 1e-9;   // of the rim's size
-constexpr double kNearBent = 0.15;  // of the rim's size, where films begin
+constexpr double kInPlane = 1e-9;  // of the rim's size
 
 Expression over_place(const std::string& text) {
   return Expression::parse(text, {"x", "y", "z"});
@@ -172,14 +171,6 @@ void require_size(const films::CapSpec& cap) {
   }
 }
 
-/// How far a place is off the wall.
-double off_wall(const films::CapSpec& cap, const Vec3& place) {
-  if (const auto bent = cap.wall->bent()) {
-    return films::distance_outside(*bent, place);
-  }
-  return unit_normal(cap).dot(place - cap.wall->at);
-}
-
 /// Puts a rim onto the wall that it lies on but for rounding, or near which it
 /// lies, of bent ones.
 void require_on_wall(const films::CapSpec& cap, const std::string& curve,
@@ -189,10 +180,9 @@ void require_on_wall(const films::CapSpec& cap, const std::string& curve,
   for (const int v : rim) {
     loop.push_back(points[v]);
   }
-  const bool plane = cap.wall->kind == films::WallKind::Plane;
-  const double reach = (plane ? kInPlane : kNearBent) * bounding_diagonal(loop);
+  const double reach = wall_reach(*cap.wall, bounding_diagonal(loop));
   for (const int v : rim) {
-    const double off = off_wall(cap, points[v]);
+    const double off = off_wall(*cap.wall, points[v]);
     if (!(std::abs(off) <= reach)) {
       throw InvalidInput(fmt::format(
           "curve '{}' is {:.3g} off the wall of '{}' at ({:.6g}, {:.6g}, "
@@ -491,6 +481,18 @@ void slide_on_wall(const films::FilmSystem& system, const films::CapSpec& cap,
                              .constraints = set};
     }
   }
+}
+
+double off_wall(const films::FilmWall& wall, const Vec3& place) {
+  if (const auto bent = wall.bent()) {
+    return films::distance_outside(*bent, place);
+  }
+  return wall.normal.normalized().dot(place - wall.at);
+}
+
+double wall_reach(const films::FilmWall& wall, double size) {
+  constexpr double kNearBent = 0.15;
+  return (wall.bent() ? kNearBent : kInPlane) * size;
 }
 
 SurfaceMesh fill_wetted_face(const films::CapSpec& cap,

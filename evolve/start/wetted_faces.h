@@ -18,6 +18,15 @@ namespace meniscus::start {
 /// n . x - n . at with its unit normal n.
 Expression formula_of(const films::FilmWall& wall);
 
+/// How far a place is off the wall, above 0 on the side of its normal, outside
+/// bent ones [length].
+double off_wall(const films::FilmWall& wall, const Vec3& place);
+
+/// The largest off_wall() of curves of this size where films begin to slide:
+/// rounding on a plane; a part of the size from a bent wall, to which they are
+/// moved [length].
+double wall_reach(const films::FilmWall& wall, double size);
+
 /// The first facets of a bent wall's cap, its rims' points first, in order; of
 /// a loop on a sphere its smaller part. Throws InvalidInput for a wall without
 /// size, a curve that does not lie on it (which one, where), and for rims that

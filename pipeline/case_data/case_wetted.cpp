@@ -8,13 +8,13 @@
 
 #include <fmt/format.h>
 
+#include "evolve/start/wetted_faces.h"
+
 namespace meniscus::case_data {
 
 namespace {
 
 constexpr int kPlacesOnRim = 16;
-constexpr double kOnWall = 1e-9;       // of the curve's size
-constexpr double kNearWall = 0.15;     // of the same, of walls that are bent
 constexpr double kSameEnergy = 1e-12;  // of films of one tension, or at 90 deg
 
 /// The films that end at the curves of a wetted face; without those whose
@@ -72,14 +72,11 @@ Points places_on(const curves::Curve& curve) {
 void check_on_wall(const Case& input, const CapEntry& cap,
                    const films::FilmWall& wall, const curves::Curve& curve,
                    const CaseValues& values) {
-  const Vec3 n = wall.normal.normalized();
   const Points places = places_on(curve);
-  const std::optional<films::BentWall> bent = wall.bent();
   const auto off = [&](const Vec3& p) {
-    return std::abs(bent ? films::distance_outside(*bent, p)
-                         : n.dot(p - wall.at));
+    return std::abs(start::off_wall(wall, p));
   };
-  const double reach = (bent ? kNearWall : kOnWall) * bounding_diagonal(places);
+  const double reach = start::wall_reach(wall, bounding_diagonal(places));
   const auto worst = std::max_element(
       places.begin(), places.end(),
       [&](const Vec3& a, const Vec3& b) { return off(a) < off(b); });
@@ -89,7 +86,8 @@ void check_on_wall(const Case& input, const CapEntry& cap,
         "{:.4g}); expected one {}, where the film begins",
         place(input, cap.line), curve.name, off(*worst), cap.spec.name,
         worst->x(), worst->y(), worst->z(),
-        bent ? fmt::format("within {:.4g} of it", reach) : "in its plane"));
+        wall.bent() ? fmt::format("within {:.4g} of it", reach)
+                    : "in its plane"));
   }
 }
 

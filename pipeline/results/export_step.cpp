@@ -179,6 +179,19 @@ Points rim_of(const SurfaceMesh& mesh, int label) {
   return next.empty() ? rim : Points();
 }
 
+/// Throws InvalidInput, naming the face.
+void require_plane_wetted_faces(const films::FilmSystem& system) {
+  for (const films::CapSpec& cap : system.caps) {
+    if (cap.wall && cap.wall->bent()) {
+      throw InvalidInput(fmt::format(
+          "step: the face that '{}' wets is not plane, and smooth STEP has no "
+          "such faces in this version; take --format step-faceted, or stl, "
+          "3mf, obj",
+          cap.name));
+    }
+  }
+}
+
 /// The system held where its films rest in `model`: the curves that films slid
 /// from are splines through their rims, walls are caps. Throws InvalidInput for
 /// a wetted face with holes, whose rims could be taken for each other.
@@ -302,6 +315,9 @@ solid::Brep whole_solid(solid::Brep brep, const StepExport& options) {
 
 void export_step(const std::filesystem::path& file,
                  const films::FilmSystem& system, const StepExport& options) {
+  if (!options.faceted) {
+    require_plane_wetted_faces(system);
+  }
   frozen::FilmModel model = settled(system, options.edge);
   const auto rounded = [&](const frozen::FilmModel& settled) {
     return settled.boundary(

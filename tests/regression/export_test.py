@@ -375,6 +375,106 @@ class ExportOfThreeBodies(Export):
     edges = ["--set", "resolution.fea=22", "--set", "resolution.film=11"]
 
 
+FUNNEL = """title = "Liquid in a funnel"
+units = "mm-N-MPa"
+
+[curves.brim]
+kind = "circle"
+center = [0, 0, -2]
+normal = [0, 0, 1]
+radius = 32
+
+[films.dome]
+kind = "disk"
+curves = ["brim"]
+tension = 3.0
+
+[solids.funnel]
+kind = "wetted"
+curve = "brim"
+wall = "cone"
+at = [0, 0, -40]
+axis = [0, 0, 1]
+half_angle = "40 deg"
+contact_angle = "100 deg"
+
+[bodies.part]
+enclosed_by = ["dome", "funnel"]
+volume = 9e4
+material = "aluminium"
+
+[materials.aluminium]
+youngs_modulus = 71700.0
+poisson_ratio = 0.33
+density = 2.8e-9
+
+[load_cases.service]
+supports = [{ on = "funnel", fix = "xyz" }]
+loads = [{ on = "dome", pressure = 10.0 }]
+
+[responses.mass]
+kind = "mass"
+
+[resolution]
+fea = 10.0
+"""
+
+
+class OfLiquidInAFunnel(ProgramTest):
+    """A face that a film wets on a cone."""
+
+    chords = 5e-3  # of volume: facets lie inside the cone
+
+    @classmethod
+    def setUpClass(cls):
+        cls.home = pathlib.Path(tempfile.mkdtemp(prefix="meniscus funnel "))
+        cls.out = cls.home / "run"
+        (cls.home / "funnel.toml").write_text(FUNNEL)
+        run_program(program.PROGRAM, "run", cls.home / "funnel.toml", "--out",
+                    cls.out, "--no-pictures")
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(cls.home)
+
+    def export(self, name, code=0):
+        file = self.folder / f"part.{name.split('-')[0]}"
+        done = self.call("export", self.out, "--format", name, "--out", file)
+        self.expect(done, code)
+        return file, done.stderr
+
+    def test_every_program_finds_the_liquid(self):
+        said = run_program("admesh", self.export("stl")[0])
+        self.assertRegex(said, r"Total disconnected facets +: +0 +0")
+        found = float(re.search(r"Volume +: +([\d.]+)", said).group(1))
+        self.assertAlmostEqual(found / 9e4, 1, delta=self.chords)
+        script = self.folder / "measure.geo"
+        script.write_text(f"""SetFactory("OpenCASCADE");
+v() = ShapeFromFile("{self.export("step-faceted")[0]}");
+m() = Mass Volume{{v(0)}};
+Printf("found %g of %.15g", #v(), m(0));
+""")
+        said = run_program("gmsh", script, "-", "-parse_and_exit")
+        solids, volume = re.search(r"found (\d+) of (\S+)", said).groups()
+        self.assertEqual(solids, "1")
+        self.assertAlmostEqual(float(volume) / found, 1, delta=1e-4)
+        script = self.folder / "measure.cmd"
+        script.write_text('printf "LOADED %.17g %.17g\\n",total_energy,'
+                          "sum(body,volume)\nq\nq\n")
+        said = run_program("evolver", "-x", "-f", script, self.export("fe")[0])
+        energy, volume = re.search(r"LOADED (\d\S+) (\S+)", said).groups()
+        film = json.loads((self.out / "result.json").read_text())["film"]
+        self.assertAlmostEqual(float(energy) / film["energy"], 1,
+                               delta=self.chords)
+        self.assertAlmostEqual(float(volume) / 9e4, 1, delta=self.chords)
+
+    def test_smooth_step_is_refused_by_its_name(self):
+        file, said = self.export("step", 2)
+        self.assertIn("the face that 'funnel' wets is not plane", said)
+        self.assertIn("step-faceted", said)
+        self.assertFalse(file.exists())
+
+
 LOADS = """
 [load_cases.service]
 supports = [{ on = "foot_pad", fix = "xyz" }]
@@ -456,7 +556,7 @@ class Trouble(ProgramTest):
         return self.folder / out
 
     def test_another_edge_and_the_files_names(self):
-        run = self.run_strut()
+        run = self.outstrut()
         for name, edge in (("3mf", "9"), ("msh", "18")):
             done = self.call("export", run, "--format", name, "--edge", edge)
             self.expect(done, 0)
@@ -464,7 +564,7 @@ class Trouble(ProgramTest):
             self.assertTrue((run / f"part_{edge}.{name}").exists())
 
     def test_what_is_no_run_is_told(self):
-        run = self.run_strut()
+        run = self.outstrut()
         self.expect(self.call("export", run, "--format", "stp"), 2,
                     "'stp' is no format; there are stl, 3mf, obj, step, .*vtu")
         self.expect(self.call("export", self.folder, "--format", "stl"), 2,
@@ -486,7 +586,7 @@ class Trouble(ProgramTest):
             self.assertEqual(sorted(run.iterdir()), before)
 
     def test_a_read_only_folder_is_told(self):
-        run = self.run_strut()
+        run = self.outstrut()
         # Root writes everywhere: somebody else then, who may not reach the
         # build's folder.
         other = {"user": 65534} if os.geteuid() == 0 else {}
