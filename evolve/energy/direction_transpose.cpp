@@ -44,8 +44,7 @@ Vec3 unit_rate(const Vec3& v, const Vec3& rate) {
   throw InvalidInput(
       "a film that slides on curves or on walls of a formula has no exact "
       "gradient: hold its rim on a curve, or let it slide on a plane, "
-      "cylinder, "
-      "sphere or cone");
+      "cylinder, sphere or cone");
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 /// input, same bits.
 #pragma once
 
-#include <algorithm>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -70,12 +69,7 @@ class FilmEnergy {
   VectorX areas(const Points& points) const;
   Points area_gradient(const Points& points, const VectorX& weight) const;
   /// False: caps, and films whose tension is a field.
-  bool has_tension(int surface) const {
-    return plain_[surface] != 0 ||
-           std::any_of(bent_.begin(), bent_.end(), [&](const BentArea& area) {
-             return area.surface == surface;
-           });
-  }
+  bool has_tension(int surface) const { return tense_[surface] != 0; }
 
   /// What of a gradient (one per vertex) runs along each unknown's direction.
   VectorX along(const Points& slope, const Points& directions) const;
@@ -160,6 +154,7 @@ class FilmEnergy {
   std::vector<std::optional<Vec3>> flat_;  // per surface: along what normal
   std::vector<BentArea> bent_;
   std::vector<char> plain_;             // per surface: tension is a number
+  std::vector<char> tense_;             // per surface: so, or on a bent wall
   std::vector<std::vector<int>> side_;  // per surface, per body
   std::vector<char> cone_;              // per body: cones measure it
   bool open_cones_ = false;             // of a body that facets do not close
