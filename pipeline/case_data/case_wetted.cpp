@@ -117,14 +117,14 @@ films::FilmWall wall_of(const Case& input, const CapEntry& cap,
     wall.half_angle = values.at(
         *wetted.half_angle,
         [](double a) { return a > 0.0 && a < 0.5 * std::numbers::pi; },
-        "above 0 and below 90 deg");
+        "above 0 and below pi/2 rad (90 deg)");
   }
   values.at(
       wetted.contact_angle,
       [](double a) {
         return a > 0.0 && a < std::numbers::pi && std::abs(std::cos(a)) < 1.0;
       },
-      "above 0 and below 180 deg");
+      "above 0 and below pi rad (180 deg)");
   const std::vector<const FilmEntry*> films = films_at(input, cap);
   if (films.empty()) {
     return wall;  // check_bodies() has told so
