@@ -84,11 +84,12 @@ function(meniscus_link_rooms target)
 endfunction()
 
 # meniscus_add_test(NAME SOURCES ... [LINK targets ...] [LABELS ...] [TIMEOUT s]
-#                   [LEVEL O2] [ALONE])
+#                   [LEVEL O2] [ALONE] [TOGETHER])
 # One GoogleTest program, each of its cases a CTest test; ALONE: with no other
-# test beside it, for tests of speed.
+# test beside it, for tests of speed. TOGETHER: all cases in one process, for
+# programs of many cases shorter than their start.
 function(meniscus_add_test name)
-  cmake_parse_arguments(ARG "ALONE" "TIMEOUT;LEVEL" "SOURCES;LINK;LABELS"
+  cmake_parse_arguments(ARG "ALONE;TOGETHER" "TIMEOUT;LEVEL" "SOURCES;LINK;LABELS"
     ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   meniscus_link_rooms(${name} ${ARG_LEVEL})
@@ -103,9 +104,15 @@ function(meniscus_add_test name)
   if(ARG_LABELS)
     set(labels LABELS "${ARG_LABELS}")
   endif()
-  # Threads wait as in the program (core/thread_waits.h). Values of parameters
-  # would put bytes of memory into the tests' names.
-  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST NO_PRETTY_VALUES
-    PROPERTIES TIMEOUT ${ARG_TIMEOUT} ENVIRONMENT OMP_WAIT_POLICY=passive
-      ${labels} ${alone})
+  # Threads wait as in the program (core/thread_waits.h).
+  set(properties TIMEOUT ${ARG_TIMEOUT} ENVIRONMENT OMP_WAIT_POLICY=passive
+    ${labels} ${alone})
+  if(ARG_TOGETHER)
+    add_test(NAME ${name} COMMAND ${name})
+    set_tests_properties(${name} PROPERTIES ${properties})
+  else()
+    # Values of parameters would put bytes of memory into the tests' names.
+    gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST NO_PRETTY_VALUES
+      PROPERTIES ${properties})
+  endif()
 endfunction()

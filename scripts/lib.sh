@@ -42,6 +42,12 @@ print_times() {
   printf '%s\n' "${step_times[@]}"
 }
 
+# The programs of tests/bench, which build() leaves out.
+build_benches() {
+  cmake --build --preset release --target benches --parallel "$(nproc)" \
+    -- --quiet
+}
+
 say() { printf '\n== %s\n' "$*"; }
 
 # need PACKAGE...: installs those that are missing, as root or with sudo.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <map>
 #include <utility>
 #include <vector>
@@ -31,27 +32,32 @@ constexpr double kKeptSide = 0.5;  // cosine
 /// Wanted edge lengths about the places where faces bend.
 class BendSizes {
  public:
-  BendSizes(double edge) : edge_(edge), cell_(edge / kGrowth) {}
+  BendSizes(double edge)
+      : edge_(edge), cell_(edge / (kGrowth * kRings)), least_(edge) {}
 
   void add(const Vec3& place, double size) {
-    if (size >= edge_) {
-      return;
-    }
-    const auto [i, j, k] = cell_of(place);
-    for (int x = i - 1; x <= i + 1; ++x) {
-      for (int y = j - 1; y <= j + 1; ++y) {
-        for (int z = k - 1; z <= k + 1; ++z) {
-          cells_[{x, y, z}].emplace_back(place, size);
-        }
-      }
+    if (size < edge_) {
+      cells_[cell_of(place)].emplace_back(place, size);
+      least_ = std::min(least_, size);
     }
   }
 
+  /// The least of what all bends leave here. Of a hundred thousand only those
+  /// in cells about the place are asked, ring by ring until none could matter.
   double at(const Vec3& place) const {
     double size = edge_;
-    if (const auto cell = cells_.find(cell_of(place)); cell != cells_.end()) {
-      for (const auto& [where, wanted] : cell->second) {
-        size = std::min(size, wanted + kGrowth * (place - where).norm());
+    const Cell here = cell_of(place);
+    for (int ring = 0; ring <= kRings; ++ring) {
+      if (least_ + kGrowth * (ring - 1) * cell_ > size) {
+        break;
+      }
+      for (int x = -ring; x <= ring; ++x) {
+        for (int y = -ring; y <= ring; ++y) {
+          const bool side = std::max(std::abs(x), std::abs(y)) == ring;
+          for (int z = -ring; z <= ring; z += side ? 1 : 2 * ring) {
+            ask({here[0] + x, here[1] + y, here[2] + z}, place, size);
+          }
+        }
       }
     }
     return size;
@@ -59,6 +65,15 @@ class BendSizes {
 
  private:
   using Cell = std::array<int, 3>;
+  static constexpr int kRings = 3;  // beyond them no bend is felt
+
+  void ask(const Cell& which, const Vec3& place, double& size) const {
+    if (const auto cell = cells_.find(which); cell != cells_.end()) {
+      for (const auto& [where, wanted] : cell->second) {
+        size = std::min(size, wanted + kGrowth * (place - where).norm());
+      }
+    }
+  }
 
   Cell cell_of(const Vec3& place) const {
     Cell cell{};
@@ -69,7 +84,8 @@ class BendSizes {
   }
 
   double edge_;
-  double cell_;  // beyond it no bend is felt
+  double cell_;
+  double least_;
   std::map<Cell, std::vector<std::pair<Vec3, double>>> cells_;
 };
 

@@ -16,6 +16,10 @@ import time
 
 import mutations
 
+# The program would start itself anew for it, which doubles what a short command
+# takes.
+os.environ.setdefault("OMP_WAIT_POLICY", "passive")
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 CASES = ROOT / "cases"
 CORPUS = ROOT / "tests" / "fuzz" / "corpus"

@@ -6,6 +6,7 @@ import csv
 import json
 import os
 import re
+import shutil
 import signal
 import sqlite3
 import struct
@@ -50,6 +51,14 @@ class Family(ProgramTest):
                       *more), code)
         return out, done
 
+    def whole(self, name="out"):
+        """The family of MEMBERS sized: its case, a folder of its results and how
+        the run ended."""
+        case = self.family()
+        made, (_, done) = program.once(
+            "family", lambda folder: self.sized(case, folder / "out", 0))
+        return case, shutil.copytree(made / "out", self.folder / name), done
+
     def rows(self, out):
         with open(out / "family.csv", newline="", encoding="utf-8") as file:
             return list(csv.DictReader(file))
@@ -62,8 +71,7 @@ class Family(ProgramTest):
                            for m in self.result(out)["members"]])
 
     def test_each_member_is_sized_as_alone_from_cold(self):
-        case = self.family()
-        out, done = self.sized(case, "out", 0)
+        case, out, done = self.whole()
         self.assertIn("4 of 4 members are sized", done.stdout)
         result = self.result(out)
         self.assertEqual(result["status"], "converged")
@@ -112,8 +120,7 @@ class Family(ProgramTest):
         self.compare(out)
 
     def test_a_row_that_is_added_leaves_the_others_as_they_are(self):
-        case = self.family()
-        out, _ = self.sized(case, "out", 0)
+        case, out, _ = self.whole()
         before = {m["name"]: m for m in self.result(out)["members"]}
         files = {name: (out / "members" / name / "result.json").read_bytes()
                  for name in before}
@@ -207,8 +214,7 @@ class Family(ProgramTest):
         self.assertIsNone(self.result(out)["members"][0]["objective"])
 
     def test_ctrl_c_then_resume_ends_with_the_same_bits(self):
-        case = self.family()
-        whole, _ = self.sized(case, "whole", 0)
+        case, whole, _ = self.whole("whole")
         out = self.folder / "out"
         running = self.start("run", case, *SMALL, "--no-pictures", "--out",
                              out)
@@ -330,15 +336,17 @@ def as_binary(stl):
 
 class ImportedPart(ProgramTest):
     def run_strut(self):
-        out = self.folder / "run"
+        folder, _ = program.once("strut", self.strut_in)
+        return folder / "run"
+
+    def strut_in(self, folder):
         self.expect(self.call(
             "run", STRUT, *SMALL, "--set", "study.kind=analyse", "--set",
             'load_cases.push.loads=[{ on = "eye_pad", force = [0, 0, 900] }]',
             "--set", 'load_cases.push.supports='
             '[{ on = "foot_pad", fix = "z" }, '
             '{ on = "foot_pad", stiffness = [1, 1, 0] }]',
-            "--no-pictures", "--out", out), 0)
-        return out
+            "--no-pictures", "--out", folder / "run"), 0)
 
     def test_a_block_has_the_stiffness_of_a_bar(self):
         run = self.run_strut()

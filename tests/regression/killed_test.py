@@ -14,9 +14,9 @@ import subprocess
 import time
 import unittest
 
-from program import SIZED_STRUT, ProgramTest, without_seconds
+from program import SIZED_STRUT, ProgramTest, once, without_seconds
 
-MOMENTS = int(os.environ.get("MENISCUS_KILLS", "12"))
+MOMENTS = int(os.environ.get("MENISCUS_KILLS", "6"))
 # Of a record: all but the seconds, which no two runs share.
 COLUMNS = ("number, key, model, phase, input_names, inputs, response_names, "
            "responses, gradient, mismatch, failure, failure_message, figures")
@@ -33,8 +33,10 @@ class Study(ProgramTest):
 
     def setUp(self):
         super().setUp()
-        self.case = self.folder / "case.toml"
-        self.case.write_text(SIZED_STRUT)
+        # In one place for all: a database notes it with the case.
+        folder, _ = once("case", lambda folder: (
+            folder / "case.toml").write_text(SIZED_STRUT))
+        self.case = folder / "case.toml"
         # Helpers' files, and a mark that tells our processes from others'.
         self.temporary = self.folder / "temporary"
         self.temporary.mkdir()
@@ -75,11 +77,13 @@ class Study(ProgramTest):
                 sorted(path.name for path in out.iterdir()))
 
     def undisturbed(self):
-        out = self.folder / "undisturbed"
+        _, (self.seconds, outcome) = once("undisturbed", self.undisturbed_in)
+        return outcome
+
+    def undisturbed_in(self, folder):
         begun = time.monotonic()
-        self.expect(self.run_study(out), 0)
-        self.seconds = time.monotonic() - begun
-        return self.outcome(out)
+        self.expect(self.run_study(folder / "out"), 0)
+        return time.monotonic() - begun, self.outcome(folder / "out")
 
     def assert_same(self, one, two):
         names = ("study.sqlite", "result.json", "part.vtu", "film.vtp",

@@ -1,4 +1,5 @@
 """Runs the program as a user would, for the tests in this folder."""
+import atexit
 import json
 import os
 import pathlib
@@ -13,6 +14,10 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = (pathlib.Path(sys.argv.pop(1)).resolve() if len(sys.argv) > 1 and
            "/" in sys.argv[1] else None)
 CASE = ROOT / "cases" / "two_arm" / "case.toml"
+# As the program sets it by starting itself anew, which loads a hundred libraries
+# a second time: half of what a short command takes.
+# hostile_test.py's test_threads_sleep_while_they_wait is about that.
+os.environ.setdefault("OMP_WAIT_POLICY", "passive")
 # About a thousand elements: the physics of the case in a second or two.
 COARSE = ["--set", "resolution.fea=20", "--set", "resolution.film=10"]
 
@@ -93,6 +98,20 @@ objective = "mass"
 constraints = [{ response = "sway", max = 0.0075 }]
 method = "mma"
 """
+
+
+_made = {}  # by name: what once() gave
+
+
+def once(name, make):
+    """make(folder) in an empty folder, for all tests of a script that begin with
+    the same run: the folder and what make returned. To be read; a test that
+    changes the folder takes a copy."""
+    if name not in _made:
+        folder = pathlib.Path(tempfile.mkdtemp(prefix="meniscus test ü "))
+        atexit.register(shutil.rmtree, folder, ignore_errors=True)
+        _made[name] = folder, make(folder)
+    return _made[name]
 
 
 def without_seconds(value):

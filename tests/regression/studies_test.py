@@ -55,7 +55,9 @@ class Gradients(ProgramTest):
             self.assertLess(constraint["value"], 1e-6)
 
 
-class Minimize(ProgramTest):
+class Sized(ProgramTest):
+    """The two-arm bracket of least mass at equal deflections."""
+
     def sized(self, *replacements):
         case = self.write_case(
             (r"^\[curves.support\]",
@@ -67,16 +69,25 @@ class Minimize(ProgramTest):
             (r"(?s)^\[study\].*", SIZED), *replacements)
         return case
 
+    def least(self):
+        """The same case sized without more: its case, how the run ended, its
+        result, its folder."""
+        case = self.sized()
+        folder, (done, result) = program.once(
+            "least mass", lambda folder: self.minimum(case, folder / "out"))
+        self.expect(done, 0)
+        return case, done, result, folder / "out"
+
     def minimum(self, case, name, *more):
         out = self.folder / name
         done = self.call("run", case, *COARSE, "--no-pictures", "--out", out,
                          *more)
         return done, self.result(out)
 
+
+class Minimize(Sized):
     def test_a_coarser_model_first_saves_evaluations(self):
-        case = self.sized()
-        done, plain = self.minimum(case, "plain")
-        self.expect(done, 0)
+        case, _, plain, _ = self.least()
         coarse = ("--set", "study.coarse_first=1.6")
         done, result = self.minimum(case, "both", *coarse)
         self.expect(done, 0)
@@ -119,8 +130,7 @@ class Minimize(ProgramTest):
         self.assertGreater(result["response_errors"]["turn_a"], 0.0)
 
     def test_least_mass_at_equal_deflections(self):
-        case = self.sized()
-        done, result = self.minimum(case, "a")
+        case, done, result, _ = self.least()
         self.expect(done, 0, "minimum found", "difference .*: kept")
         self.assertRegex(result["message"], "minimum found.*is below the "
                          "mesh's own error.*'left_deflection' stands")
@@ -142,42 +152,37 @@ class Minimize(ProgramTest):
         self.assertGreater(best["fill"], 1.4e6)
 
     def test_a_run_from_the_answer_of_another(self):
-        case = self.sized()
-        done, first = self.minimum(case, "first")
-        self.expect(done, 0)
+        case, _, first, answer = self.least()
         look = ("--set", "study.kind=analyse")
-        done, again = self.minimum(case, "again", "--from",
-                                   self.folder / "first", *look)
+        done, again = self.minimum(case, "again", "--from", answer, *look)
         self.expect(done, 0)
         self.assertEqual(again["parameters"], first["parameters"])
         # Judged on a mesh made for it: nearly that one.
         self.assertLess(abs(again["responses"]["left_deflection"] /
                             first["responses"]["left_deflection"] - 1), 1e-2)
         # What --set says goes before it.
-        done, moved = self.minimum(case, "moved", "--from",
-                                   self.folder / "first", "--set",
+        done, moved = self.minimum(case, "moved", "--from", answer, "--set",
                                    "radius=33", *look)
         self.expect(done, 0)
         self.assertEqual(moved["parameters"],
                          {**first["parameters"], "radius": 33.0})
         # A sized part goes on from its answer and finds nothing much better.
-        done, on = self.minimum(case, "on", "--from", self.folder / "first")
+        done, on = self.minimum(case, "on", "--from", answer)
         self.expect(done, 0)
         self.assertLess(abs(on["objective"] / first["objective"] - 1), 3e-3)
         self.expect(self.call("run", case, "--from", self.folder / "none"), 2,
                     "--from .*none")
         self.expect(self.call("run", program.ROOT / "cases" / "stepped_shaft" /
-                              "case.toml", "--from", self.folder / "first"), 2,
+                              "case.toml", "--from", answer), 2,
                     "no design variable of this case")
         self.expect(self.call(
-            "run", case, "--from", self.folder / "first", "--set",
+            "run", case, "--from", answer, "--set",
             "design.radius.bounds=[36.5, 40]"), 2, r"radius.*bounds")
 
     def test_a_method_without_gradients_finds_it_too(self):
-        case = self.sized()
-        _, exact = self.minimum(case, "exact")
+        case, _, exact, _ = self.least()
         case.write_text(case.read_text() + 'method = "cobyla"\n'
-                        "max_evaluations = 300\n")
+                        "max_evaluations = 100\n")
         _, other = self.minimum(case, "cobyla")
         self.assertEqual(other["gradient_evaluations"], 0)
         self.assertLess(abs(other["objective"] / exact["objective"] - 1), 3e-3)
@@ -324,11 +329,10 @@ max_evaluations = 15
                   "mismatch", "(?i)bound|start elsewhere")
 
 
-class Resume(ProgramTest):
+class Resume(Sized):
     def test_a_minimum_resumes_with_the_same_bits(self):
-        case = Minimize.sized(self)
-        whole, part = self.folder / "whole", self.folder / "part"
-        self.call("run", case, *COARSE, "--no-pictures", "--out", whole)
+        case, _, _, whole = self.least()
+        part = self.folder / "part"
         cut = self.call("run", case, *COARSE, "--no-pictures", "--out", part,
                         "--set", "study.max_evaluations=3")
         self.expect(cut, 3)

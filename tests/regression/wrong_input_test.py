@@ -217,14 +217,18 @@ class NoResults(ProgramTest):
             self.assertNotIn("tetrahedra", done.stderr, command)
         self.assertEqual(self.listing(), before)
 
+    def good(self):
+        made, _ = program.once("good", lambda folder: self.expect(
+            self.call("run", program.CASE, "--out", folder / "good",
+                      "--no-pictures", *COARSE), 0))
+        return shutil.copytree(made / "good", self.folder / "good")
+
     def listing(self):
         return {path: path.stat().st_mtime_ns
                 for path in self.folder.rglob("*") if path.is_file()}
 
     def test_told_at_once(self):
-        good = self.folder / "good"
-        self.expect(self.call("run", program.CASE, "--out", good,
-                              "--no-pictures", *COARSE), 0)
+        good = self.good()
         (self.folder / "empty").mkdir()
         foreign = self.folder / "foreign"
         foreign.mkdir()
@@ -239,9 +243,7 @@ class NoResults(ProgramTest):
             self.all_commands("damaged", "damaged/study.sqlite")
 
     def test_read_only_results(self):
-        good = self.folder / "good"
-        self.expect(self.call("run", program.CASE, "--out", good,
-                              "--no-pictures", *COARSE), 0)
+        self.good()
         before = self.listing()
         for command in (["report", "good"],
                         ["export", "good", "--format", "stl"],

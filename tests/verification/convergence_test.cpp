@@ -19,7 +19,7 @@ namespace {
 
 /// Film edges are half of them. Above 16 the rims and the film's least facet
 /// count fix the mesh, not the edge asked for.
-constexpr std::array<int, 3> kEdges = {16, 8, 5};  // mm
+constexpr std::array<int, 3> kEdges = {16, 8, 6};  // mm
 // An estimate of support_x may be short of the true error by this, no more.
 constexpr double kShort = 2.0;
 constexpr std::array<const char*, 3> kNames = {"support_x", "left", "right"};

@@ -1,5 +1,5 @@
 // Settles films of several kinds, twice and then two at a time, and prints
-// every bit of the answers: film_bits_test compares them between thread counts.
+// every bit of the answers: FilmBits.* compares them between thread counts.
 #include <cstdint>
 #include <cstring>
 #include <functional>
