@@ -3,6 +3,8 @@
 #include <array>
 #include <cmath>
 
+#include <Eigen/Geometry>
+
 #include "core/math/dual.h"
 
 namespace meniscus::energy {
@@ -13,6 +15,11 @@ using std::atan2;
 using std::sin;
 using std::sqrt;
 using Dual9 = BasicDual<9>;
+
+constexpr double kSmallTurn = 0.3;  // rad
+
+double number(double value) { return value; }
+double number(const Dual9& value) { return value.value; }
 
 template <class Scalar>
 using WallPlace = std::array<Scalar, 3>;
@@ -25,11 +32,36 @@ Scalar dot(const WallPlace<Scalar>& a, const WallPlace<Scalar>& b) {
 }
 
 template <class Scalar>
+WallPlace<Scalar> minus(const WallPlace<Scalar>& a,
+                        const WallPlace<Scalar>& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+
+/// By edges: of a facet that is small beside its wall the corners' own products
+/// cancel to the digits of the wall's size.
+template <class Scalar>
 Scalar det(const WallFacet<Scalar>& c) {
-  const WallPlace<Scalar> cross = {c[1][1] * c[2][2] - c[1][2] * c[2][1],
-                                   c[1][2] * c[2][0] - c[1][0] * c[2][2],
-                                   c[1][0] * c[2][1] - c[1][1] * c[2][0]};
+  const WallPlace<Scalar> b = minus(c[1], c[0]);
+  const WallPlace<Scalar> d = minus(c[2], c[0]);
+  const WallPlace<Scalar> cross = {b[1] * d[2] - b[2] * d[1],
+                                   b[2] * d[0] - b[0] * d[2],
+                                   b[0] * d[1] - b[1] * d[0]};
   return dot(c[0], cross);
+}
+
+/// sin t - t.
+template <class Scalar>
+Scalar sin_less(const Scalar& t) {
+  if (std::abs(number(t)) > kSmallTurn) {
+    return sin(t) - t;
+  }
+  // The series, to t^15 / 15! < 1e-17 t^3.
+  const Scalar square = t * t;
+  Scalar sum = 1.0;
+  for (const double k : {12.0, 10.0, 8.0, 6.0, 4.0}) {
+    sum = 1.0 - square / (k * (k + 1.0)) * sum;
+  }
+  return -1.0 / 6.0 * t * square * sum;
 }
 
 /// A facet about the wall's axis, z along it; of cylinders from the first
@@ -52,9 +84,6 @@ WallFacet<Scalar> about_axis(const films::BentWall& wall,
   return result;
 }
 
-double number(double value) { return value; }
-double number(const Dual9& value) { return value.value; }
-
 /// An edge across the axis: a x b, and the angle from a to b.
 template <class Scalar>
 struct Turn {
@@ -62,7 +91,7 @@ struct Turn {
   Scalar angle;
 
   Turn(const WallPlace<Scalar>& a, const WallPlace<Scalar>& b)
-      : cross(a[0] * b[1] - a[1] * b[0]),
+      : cross(a[0] * (b[1] - a[1]) - a[1] * (b[0] - a[0])),
         angle(atan2(cross, a[0] * b[0] + a[1] * b[1])) {}
 };
 
@@ -141,8 +170,8 @@ Scalar lens(const films::BentWall& wall, const WallFacet<Scalar>& corners) {
           sum + (a[2] + b[2]) / 12.0 * (turn.cross - 3.0 * square * turn.angle);
     } else {
       const double t = std::tan(wall.half_angle);
-      sum = sum + t * t / 12.0 * a[2] * b[2] * (a[2] + b[2]) *
-                      (sin(turn.angle) - turn.angle);
+      sum = sum +
+            t * t / 12.0 * a[2] * b[2] * (a[2] + b[2]) * sin_less(turn.angle);
     }
   }
   return sum;

@@ -16,6 +16,7 @@ namespace {
 constexpr int kWallSteps = 40;
 constexpr double kOnWall = 1e-14;  // of the coordinates' size
 constexpr double kAcross = 0.7;    // cosine: a rim's motion to its normal
+constexpr double kFarAlong = 1e6;  // radii of a cylinder: no film goes there
 
 Vec3 any_normal(const Vec3& t) { return t.cross(line_axis(t)).normalized(); }
 
@@ -315,8 +316,9 @@ Points FilmSpace::moved(const Points& points, const Points& directions,
   for (int i = 0; i < unknowns(); ++i) {
     result[vertex_[i]] += heights[i] * directions[i];
   }
-  if (has_walls()) {
-    project(result);
+  for (std::size_t k = 0; k < walled_.size(); ++k) {
+    Vec3& at = result[walled_[k]];
+    at = on_walls(k, at, points[walled_[k]]);
   }
   return result;
 }
@@ -364,15 +366,37 @@ FilmPaths FilmSpace::paths(const Points& points, const Points& directions,
 void FilmSpace::project(Points& points) const {
   for (std::size_t k = 0; k < walled_.size(); ++k) {
     Vec3& at = points[walled_[k]];
-    const Vec3 found = back_on(walls_[k], at);
-    if (!found.allFinite()) {
-      throw MeshError(fmt::format(
-          "vertex {} at ({:.6g}, {:.6g}, {:.6g}) cannot be put back on its "
-          "wall; check the constraint's formula there",
-          walled_[k], at.x(), at.y(), at.z()));
-    }
-    at = found;
+    at = on_walls(k, at, at);
   }
+}
+
+Vec3 FilmSpace::on_walls(std::size_t k, const Vec3& at,
+                         const Vec3& from) const {
+  const Vec3 found = back_on(walls_[k], at);
+  const films::BentWall* bent = bent_wall(walls_[k]);
+  if (!found.allFinite() ||
+      (bent != nullptr && bent->kind == films::WallKind::Cylinder &&
+       !((found - bent->at).norm() < kFarAlong * bent->radius))) {
+    throw OffWalls(off_walls(k, bent != nullptr ? from : at));
+  }
+  return found;
+}
+
+std::string FilmSpace::off_walls(std::size_t k, const Vec3& at) const {
+  const std::string place =
+      fmt::format("({:.6g}, {:.6g}, {:.6g})", at.x(), at.y(), at.z());
+  if (bent_wall(walls_[k]) == nullptr) {
+    return fmt::format(
+        "vertex {} at {} cannot be put back on its wall; check the "
+        "constraint's formula there",
+        walled_[k], place);
+  }
+  return fmt::format(
+      "the rim on the wall of '{}' runs off it from {}, over its axis, center "
+      "or "
+      "apex or far away; start on a curve nearer to where the film rests, or "
+      "take shorter edges, another volume or contact angle",
+      level_sets_[walls_[k].level_sets[0]].name, place);
 }
 
 Vec3 FilmSpace::back_on(const Wall& wall, Vec3 at) const {

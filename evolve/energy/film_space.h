@@ -7,6 +7,7 @@
 
 #include <vector>
 
+#include "core/error.h"
 #include "evolve/films/film_complex.h"
 
 namespace meniscus::energy {
@@ -15,6 +16,12 @@ enum class FilmMotion {
   NormalSpace,
   Anywhere  // within the walls: for descent, which may then slide vertices to
             // where coarse facets have less area, as Surface Evolver's `g` does
+};
+
+/// A vertex that cannot be put back on its walls; names them and the place.
+class OffWalls : public MeshError {
+ public:
+  using MeshError::MeshError;
 };
 
 /// How vertices move with heights h along directions n from base points X: on
@@ -73,17 +80,19 @@ class FilmSpace {
   /// transpose_directions().
   Points direction_rates(const Points& points, const Points& motion) const;
 
-  /// points + h d at every unknown's vertex, back on the walls.
+  /// points + h d at every unknown's vertex, back on the walls. Throws as
+  /// project().
   Points moved(const Points& points, const Points& directions,
                const VectorX& heights) const;
 
-  /// True where films slide on cylinders, spheres or cones.
+  /// True where films slide on cylinders, spheres or cones; of walled()[k].
   bool has_bent_walls() const;
+  bool is_on_bent(int k) const { return bent_wall(walls_[k]) != nullptr; }
   FilmPaths paths(const Points& points, const Points& directions,
                   const VectorX& heights) const;
 
-  /// Puts every walled vertex back on its walls. Throws MeshError, with the
-  /// place, when one cannot be reached.
+  /// Puts every walled vertex back on its walls. Throws OffWalls when one
+  /// cannot be reached, or only so far along a cylinder that digits are lost.
   void project(Points& points) const;
 
   /// What the walls' bending adds to the Hessian at walled()[k], for a given
@@ -110,6 +119,9 @@ class FilmSpace {
   /// A cylinder, sphere or cone; null: others.
   const films::BentWall* bent_wall(const Wall& wall) const;
   Vec3 back_on(const Wall& wall, Vec3 at) const;
+  /// `from`: where a vertex comes from, for messages.
+  Vec3 on_walls(std::size_t k, const Vec3& at, const Vec3& from) const;
+  std::string off_walls(std::size_t k, const Vec3& at) const;
   double nearest(const Wall& wall, const Vec3& at) const;
   void wall_directions(int k, const Points& points, const Vec3& normal,
                        Points& result) const;

@@ -14,6 +14,8 @@ namespace {
 
 using std::sqrt;
 
+constexpr double kSameAxis = 1e-14;  // of the points that tell it
+
 template <class Scalar>
 using Place = std::array<Scalar, 3>;
 
@@ -54,6 +56,22 @@ Place<Scalar> nearest(const BentWall& wall, const Place<Scalar>& place) {
 }
 
 }  // namespace
+
+BentWall told_beside(BentWall wall, const Vec3& place) {
+  if (wall.kind == WallKind::Cylinder) {
+    wall.at += wall.axis.dot(place - wall.at) * wall.axis;
+  }
+  return wall;
+}
+
+bool is_same(const BentWall& a, const BentWall& b) {
+  if (a.kind != b.kind || a.radius != b.radius ||
+      a.half_angle != b.half_angle || a.axis != b.axis) {
+    return false;
+  }
+  const double off = (told_beside(a, b.at).at - b.at).norm();
+  return off <= kSameAxis * (a.at.norm() + b.at.norm());
+}
 
 double distance_outside(const BentWall& wall, const Vec3& place) {
   const Vec3 from = place - wall.at;

@@ -20,6 +20,13 @@ struct BentWall {
   double half_angle = 0.5;    // of a cone, between its axis and its lines [rad]
 };
 
+/// The same wall; a cylinder told by the point of its axis beside `place`, for
+/// `at` far along it costs digits.
+BentWall told_beside(BentWall wall, const Vec3& place);
+
+/// The same surface, wherever along its axis a cylinder is told?
+bool is_same(const BentWall& a, const BentWall& b);
+
 /// 0 on the wall, of unit slope there, above 0 outside [length]; over x, y, z.
 Expression wall_formula(const BentWall& wall);
 

@@ -1,5 +1,8 @@
 #include "evolve/frozen/carry.h"
 
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
 #include "core/error.h"
 #include "core/math/union_find.h"
 #include "evolve/energy/film_space.h"
@@ -398,6 +401,13 @@ void Carry::follow(Points& points) const {
     }
     for (const auto& [v, wall] : on_bent_) {
       points[v] = films::onto_wall(wall, flat[v]);
+      if (!points[v].allFinite()) {
+        throw MeshError(fmt::format(
+            "the wetted face cannot follow its film at ({:.6g}, {:.6g}, "
+            "{:.6g}): its wall has no nearest point there; take another volume "
+            "or contact angle, or shorter edges",
+            flat[v].x(), flat[v].y(), flat[v].z()));
+      }
     }
   }
 }

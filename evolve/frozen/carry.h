@@ -44,7 +44,8 @@ class Carry {
   Points at(const Points& rim_moves, double fraction) const;
 
   /// Puts the vertices inside faces that films wet where their rims, at
-  /// `points`, have them: X, but from rims that have slid on walls.
+  /// `points`, have them: X, but from rims that have slid on walls. Throws
+  /// MeshError, with the place, where a bent one has no nearest point.
   void follow(Points& points) const;
 
   /// follow() to `points` for rates of all vertices, and transposed: a gradient

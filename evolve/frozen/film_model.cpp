@@ -167,10 +167,15 @@ const films::FilmWall& FilmModel::Impl::wall_of(const films::FilmSystem& system,
   const auto cap = std::find_if(
       system.caps.begin(), system.caps.end(),
       [&](const films::CapSpec& c) { return c.name == face.name; });
-  const films::LevelSet& plane =
-      complex.level_sets[complex.constraint_sets[face.constraints].front()];
-  if (cap == system.caps.end() || !cap->wall ||
-      start::formula_of(*cap->wall).text() != plane.formula.text()) {
+  const auto stays = [&](const films::FilmWall& wall) {
+    const std::optional<films::BentWall> bent = wall.bent();
+    const films::LevelSet& own =
+        complex.level_sets[complex.constraint_sets[face.constraints].front()];
+    return bent && own.bent
+               ? films::is_same(*bent, *own.bent)
+               : start::formula_of(wall).text() == own.formula.text();
+  };
+  if (cap == system.caps.end() || !cap->wall || !stays(*cap->wall)) {
     throw InvalidInput(fmt::format(
         "the design moves the wall of '{}'; its place belongs to the frozen "
         "model: freeze another one",
@@ -394,11 +399,18 @@ settle::FilmState FilmModel::Impl::settle_in_parts(
   } catch (const InvalidInput& error) {
     state.failure = Failure{FailureKind::NotANumber, error.what()};
   }
+  if (!state.points.empty()) {
+    try {
+      carry->follow(state.points);
+    } catch (const MeshError& error) {
+      state.points = reference.points;
+      if (!state.failure) {
+        state.failure = Failure{FailureKind::SurfaceInvalid, error.what()};
+      }
+    }
+  }
   if (state.failure) {
     state.report.verdict = state.failure->message;
-  }
-  if (!state.points.empty()) {
-    carry->follow(state.points);
   }
   state.report.iterations = iterations;
   return state;

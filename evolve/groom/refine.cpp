@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <utility>
 
+#include <fmt/format.h>
+
+#include "core/error.h"
 #include "core/geometry/edge_key.h"
 #include "evolve/films/edge_marks.h"
 
@@ -111,7 +114,15 @@ films::PlacedVertex middle_of(const films::FilmComplex& complex,
   if (plan.in_film[e] == 0 && plan.obstacle[e] >= 0) {
     for (const int level : complex.constraint_sets[plan.obstacle[e]]) {
       if (const auto& bent = complex.level_sets[level].bent) {
-        made.place = films::onto_wall(*bent, made.place);  // a wetted face
+        const Vec3 from = made.place;
+        made.place = films::onto_wall(*bent, from);  // a wetted face
+        if (!made.place.allFinite()) {
+          throw InvalidInput(fmt::format(
+              "an edge of the face on the wall of '{}' has its middle at "
+              "({:.6g}, {:.6g}, {:.6g}), where that has no nearest point; take "
+              "shorter edges",
+              complex.level_sets[level].name, from.x(), from.y(), from.z()));
+        }
       }
     }
   }

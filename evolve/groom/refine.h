@@ -24,6 +24,8 @@ struct Refinement {
   films::FilmComplex complex;
   std::vector<Edge> parents;  // one per new vertex
 };
+/// Throws InvalidInput where the middle of an edge has no nearest point on the
+/// bent wall of its face.
 Refinement refine(const films::FilmComplex& complex);
 
 }  // namespace meniscus::groom

@@ -61,6 +61,14 @@ class Flow {
       facet_weight_.push_back(
           film ? std::max(targets_.tension[label], 0.1 * most) : 0.0);
     }
+    const energy::FilmSpace& space = energy_.space();
+    for (std::size_t k = 0; k < space.walled().size(); ++k) {
+      const int v = space.walled()[k];
+      if (unknown_of_[v] >= 0 && space.is_on_bent(static_cast<int>(k)) &&
+          space.line_ends(v)[0] >= 0) {
+        bent_rims_.push_back(v);
+      }
+    }
     const double edge = energy_.mean_edge(complex.mesh.points);
     const double diagonal = bounding_diagonal(complex.mesh.points);
     tau_ = options.smoothing * options.smoothing * edge * edge;
@@ -179,7 +187,9 @@ class Flow {
       right.middleCols<3>(3 + 3 * k) =
           rows_of(energy_.functional_gradient(x, held_[k]));
     }
-    return move_at_volume(factor_->solve(right));
+    Eigen::MatrixXd dx = factor_->solve(right);
+    keep_along_rims(dx);
+    return move_at_volume(dx);
   }
 
   VectorX lumped_area() const {
@@ -210,7 +220,23 @@ class Flow {
       const VectorX pull = least_norm(normals.transpose(), force);
       rows.row(unknown_of_[v]) = force - normals.transpose() * pull;
     }
+    keep_along_rims(rows);
     return rows;
+  }
+
+  /// Takes out what runs along rims on bent walls. Their edges are chords that
+  /// enclose less film the less even they are, while the wall behind them
+  /// counts whole: they would run together on one side of a tube.
+  void keep_along_rims(Eigen::Ref<Eigen::MatrixXd> rows) const {
+    const Points& x = complex_.mesh.points;
+    for (const int v : bent_rims_) {
+      const Edge& ends = energy_.space().line_ends(v);
+      const Vec3 along = (x[ends[1]] - x[ends[0]]).normalized();
+      for (Eigen::Index c = 0; c < rows.cols(); c += 3) {
+        auto row = rows.block<1, 3>(unknown_of_[v], c);
+        row -= row.dot(along) * along.transpose();
+      }
+    }
   }
 
   Points moved(const Eigen::MatrixXd& dx, const VectorX& pressure) const {
@@ -296,6 +322,7 @@ class Flow {
   films::FilmTargets targets_;
   std::vector<int> unknown_of_;  // per vertex: its mover, or -1
   std::vector<int> movers_;      // vertices
+  std::vector<int> bent_rims_;   // vertices
   std::vector<double> facet_weight_;
   std::vector<int> held_;
   std::optional<SymmetricFactor> factor_;
@@ -334,7 +361,7 @@ FlowReport flow_to_rest(films::FilmComplex& complex,
     }
     const double next = flow.energy();
     if (hold && junctions_rest &&
-        std::abs(energy - next) <= options.energy_change * energy) {
+        std::abs(energy - next) <= options.energy_change * std::abs(energy)) {
       report.settled = true;
       break;
     }

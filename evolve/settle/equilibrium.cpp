@@ -258,8 +258,14 @@ FilmState settle_past_saddles(const energy::FilmEnergy& energy,
   const double edge = energy.mean_edge(saddle.points);
   for (const double off : kOffSaddle) {
     for (const double height : {off * edge, -off * edge}) {
-      FilmState beside = settle_from(
-          energy.space().moved(saddle.points, directions, height * mode));
+      Points off_saddle;
+      try {
+        off_saddle =
+            energy.space().moved(saddle.points, directions, height * mode);
+      } catch (const energy::OffWalls&) {
+        continue;
+      }
+      FilmState beside = settle_from(off_saddle);
       saddle.report.iterations += beside.report.iterations;
       if (!beside.failure) {
         beside.report.iterations = saddle.report.iterations;

@@ -243,7 +243,13 @@ NestedResult NestedNewton::run(const Points& start, const VectorX& pressure,
       result.reason = "the energy curves down";
       break;
     }
-    Points next = energy_.space().moved(points_, directions_, step.heights);
+    Points next;
+    try {
+      next = energy_.space().moved(points_, directions_, step.heights);
+    } catch (const energy::OffWalls& error) {
+      result.reason = error.what();
+      break;
+    }
     if (energy_.smallest_cosine(next, points_) < kTurn) {
       result.reason = "a step folds the film";
       break;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/Core>
 #include <fmt/format.h>
@@ -36,10 +37,15 @@ FilmNewton::FilmNewton(const energy::FilmEnergy& energy,
   }
 }
 
-FilmNewton::Trial FilmNewton::trial_at(const VectorX& heights) const {
+std::optional<FilmNewton::Trial> FilmNewton::trial_at(const VectorX& heights) {
   Trial trial;
   trial.heights = heights;
-  trial.points = energy_.space().moved(base_, directions_, heights);
+  try {
+    trial.points = energy_.space().moved(base_, directions_, heights);
+  } catch (const energy::OffWalls& error) {
+    refusal_ = error.what();
+    return std::nullopt;
+  }
   trial.energy = energy_.value(trial.points, targets_);
   trial.volume = energy_.volumes(trial.points);
   return trial;
@@ -109,8 +115,9 @@ bool FilmNewton::volumes_hold() const {
 }
 
 double FilmNewton::rounding() const {
-  return kSumRounding * (now_.energy + pressure_.cwiseAbs().dot(
-                                           now_.volume.cwiseAbs().matrix()));
+  return kSumRounding *
+         (std::abs(now_.energy) +
+          pressure_.cwiseAbs().dot(now_.volume.cwiseAbs().matrix()));
 }
 
 /// Augmented Lagrangian; pressure bodies enter with their pressure.
@@ -149,6 +156,7 @@ bool FilmNewton::factorize() {
 
 void FilmNewton::accept(Trial&& trial) {
   now_ = std::move(trial);
+  refusal_.clear();
   evaluate();
 }
 
@@ -172,21 +180,21 @@ bool FilmNewton::search_down(const energy::ConstrainedHessian::Step& step,
   const double fold =
       std::min(kFold, 0.9 * energy_.smallest_cosine(now_.points, base_));
   for (double s = 1.0; s >= kShortest; s *= 0.5) {
-    Trial trial = trial_at(now_.heights + s * step.dh);
-    if (held > 0) {
+    std::optional<Trial> trial = trial_at(now_.heights + s * step.dh);
+    if (trial && held > 0) {
       // Volumes curve away from the step; without bringing them back the
       // merit would refuse long steps (Maratos).
-      const VectorX stray = missing(trial.volume) - (1.0 - s) * c;
-      trial = trial_at(trial.heights + system_.restore(stray));
+      const VectorX stray = missing(trial->volume) - (1.0 - s) * c;
+      trial = trial_at(trial->heights + system_.restore(stray));
     }
-    if (energy_.smallest_cosine(trial.points, base_) < fold) {
+    if (!trial || energy_.smallest_cosine(trial->points, base_) < fold) {
       continue;
     }
-    if (merit(trial, pressure, penalty) <=
+    if (merit(*trial, pressure, penalty) <=
         start + 1e-4 * s * slope + rounding()) {
       pressure_ += s * (pressure - pressure_);
       last_step_ = s;
-      accept(std::move(trial));
+      accept(std::move(*trial));
       return true;
     }
   }
@@ -201,10 +209,13 @@ bool FilmNewton::search_residual(const energy::ConstrainedHessian::Step& step) {
   const Points old_base = base_;
   const Points old_directions = directions_;
   for (double s = 1.0; s >= 0.1; s *= 0.5) {
-    Trial trial = trial_at(now_.heights + s * step.dh);
-    const double cosine = energy_.smallest_cosine(trial.points, base_);
-    const double left = missing(trial.volume).norm();
-    accept(std::move(trial));
+    std::optional<Trial> trial = trial_at(now_.heights + s * step.dh);
+    if (!trial) {
+      continue;
+    }
+    const double cosine = energy_.smallest_cosine(trial->points, base_);
+    const double left = missing(trial->volume).norm();
+    accept(std::move(*trial));
     for (std::size_t k = 0; k < held_.size(); ++k) {
       pressure_[held_[k]] += s * step.dp[static_cast<Eigen::Index>(k)];
     }
@@ -268,11 +279,14 @@ void FilmNewton::polish(NewtonResult& result) {
     result.mode_position =
         now_.points[energy_.vertices()[static_cast<std::size_t>(at)]];
   }
-  if (step.dh.allFinite()) {
+  if (!step.dh.allFinite()) {
+    return;
+  }
+  if (std::optional<Trial> trial = trial_at(now_.heights + step.dh)) {
     for (std::size_t k = 0; k < held_.size(); ++k) {
       pressure_[held_[k]] += step.dp[static_cast<Eigen::Index>(k)];
     }
-    accept(trial_at(now_.heights + step.dh));
+    accept(std::move(*trial));
   }
 }
 
@@ -287,11 +301,21 @@ NewtonResult FilmNewton::run(const Points& base, const Points& directions,
   base_shift_ = most_tension / (diagonal * diagonal);
   shift_ = 0.0;
   // Start heights, and pressures that fit the slopes best in the metric.
-  accept(
-      trial_at(start.size() > 0 ? start : VectorX::Zero(energy_.unknowns())));
+  NewtonResult result;
+  const VectorX first =
+      start.size() > 0 ? start : VectorX::Zero(energy_.unknowns());
+  std::optional<Trial> trial = trial_at(first);
+  if (!trial) {
+    result.reason = refusal_;
+    result.points = base;
+    result.heights = first;
+    result.pressure = VectorX::Zero(energy_.functionals());
+    result.residual = std::numeric_limits<double>::infinity();
+    return result;
+  }
+  accept(std::move(*trial));
   pressure_ =
       energy::guess_pressures(targets_, held_, gradient_, volumes_dh_, metric_);
-  NewtonResult result;
   int short_steps = 0;
   for (;; ++result.iterations) {
     if (options_.monitor != nullptr) {
@@ -311,7 +335,9 @@ NewtonResult FilmNewton::run(const Points& base, const Points& directions,
     // A damped Newton step: a shifted Hessian and a search on the augmented
     // Lagrangian for a minimum, on the residual for a saddle.
     if (!advance()) {
-      result.reason = "no step lowers the energy without folding the film";
+      result.reason = refusal_.empty()
+                          ? "no step lowers the energy without folding the film"
+                          : refusal_;
       break;
     }
     // Steps that stay short are a film on its way to tear.

@@ -1,6 +1,10 @@
 /// The iteration behind settle_along and settle_in_normals.
 #pragma once
 
+#include <optional>
+#include <string>
+#include <vector>
+
 #include "core/monitor.h"
 #include "evolve/energy/constrained_hessian.h"
 #include "evolve/energy/energy.h"
@@ -61,7 +65,8 @@ class FilmNewton {
   VectorX missing(const VectorX& volume) const;
   double merit(const Trial& trial, const VectorX& pressure,
                double penalty) const;
-  Trial trial_at(const VectorX& heights) const;
+  /// Empty, and why in refusal_, where a wall cannot be reached.
+  std::optional<Trial> trial_at(const VectorX& heights);
   void compute_hessian();
   bool factorize();
   bool advance();
@@ -90,6 +95,7 @@ class FilmNewton {
   double shift_ = 0.0;
   double base_shift_ = 0.0;
   double last_step_ = 1.0;
+  std::string refusal_;  // of a step since the last one that was taken
 };
 
 }  // namespace meniscus::settle

@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <numbers>
 #include <numeric>
 
 #include <Eigen/Geometry>
 
 #include "core/error.h"
+#include "evolve/films/tube_strip.h"
+#include "evolve/films/wall_development.h"
 #include "evolve/start/cap_faces.h"
 #include "evolve/start/disk_fill.h"
 
@@ -22,174 +25,216 @@ constexpr double kMostTurn = kPi / 6.0;  // of an edge around a wall
 double angle_of(const Vec3& about) { return std::atan2(about.y(), about.x()); }
 
 /// How far a loop turns about the axis: 0, or a full turn either way.
-double turn_of(const films::BentWall& wall, const Points& loop) {
-  double sum = 0.0;
-  for (std::size_t k = 0; k < loop.size(); ++k) {
-    const Vec3 a = films::about_axis(wall, loop[k]);
-    const Vec3 b = films::about_axis(wall, loop[(k + 1) % loop.size()]);
-    sum += std::atan2(a.x() * b.y() - a.y() * b.x(),
-                      a.x() * b.x() + a.y() * b.y());
-  }
-  return sum;
+double turn_of(const std::vector<double>& angles) {
+  return angles.back() - angles.front();
 }
 
-/// A wall, or what a face needs of it, laid into the plane z = 0 with angles
-/// kept.
+/// A wall's loops laid into the plane z = 0 with angles kept, and the way back.
 struct Map {
-  std::function<Vec3(const Vec3&)> to_plane;
+  std::vector<Points> loops;
   std::function<Vec3(const Vec3&)> from_plane;
   /// Length in the plane over that on the wall; empty: 1.
   std::function<double(const Vec3&)> scale;
   bool has_apex = false;  // a cone's, at the origin within the face
 };
 
-Vec3 at_about(const films::BentWall& wall, const Vec3& about) {
-  const Vec3 x = films::first_axis(wall);
-  return wall.at + about.x() * x + about.y() * wall.axis.cross(x) +
-         about.z() * wall.axis;
-}
-
-/// Where the wall is so far along its axis, at an angle.
-Vec3 at_angle(const films::BentWall& wall, double angle, double z) {
-  const double out = wall.kind == films::WallKind::Cone
-                         ? z * std::tan(wall.half_angle)
-                         : wall.radius;
-  return at_about(wall, {out * std::cos(angle), out * std::sin(angle), z});
-}
-
-/// Unrolled, for faces that do not go around the axis.
-Map unrolled(const films::BentWall& wall, const std::vector<Points>& loops) {
-  Vec3 middle = Vec3::Zero();
+template <class ToPlane>
+std::vector<Points> laid_flat(const std::vector<Points>& loops,
+                              const ToPlane& to_plane) {
+  std::vector<Points> result;
   for (const Points& loop : loops) {
-    for (const Vec3& p : loop) {
-      middle += films::about_axis(wall, p);
+    Points& places = result.emplace_back();
+    std::transform(loop.begin(), loop.end(), std::back_inserter(places),
+                   to_plane);
+  }
+  return result;
+}
+
+/// For faces that do not go around the axis. The loop around the others is the
+/// one that reaches over most angles.
+Map unrolled(const films::BentWall& wall, const std::vector<Points>& loops) {
+  films::WallDevelopment plane{wall};
+  std::vector<std::vector<double>> angles;
+  std::vector<double> middles;
+  double most = 0.0;
+  for (const Points& loop : loops) {
+    angles.push_back(films::angles_along(wall, loop));
+    const auto [low, high] =
+        std::minmax_element(angles.back().begin(), angles.back().end());
+    middles.push_back(0.5 * (*low + *high));
+    if (angles.size() == 1 || *high - *low > most) {
+      most = *high - *low;
+      plane.zero = middles.back();
     }
   }
-  const double zero = angle_of(middle);
-  const auto from_middle = [wall, zero](const Vec3& about) {
-    return std::remainder(angle_of(about) - zero, 2.0 * kPi);
-  };
-  if (wall.kind == films::WallKind::Cylinder) {
-    return {[=](const Vec3& p) {
-              const Vec3 about = films::about_axis(wall, p);
-              return Vec3(wall.radius * from_middle(about), about.z(), 0.0);
-            },
-            [=](const Vec3& q) {
-              return at_angle(wall, zero + q.x() / wall.radius, q.y());
-            },
-            {}};
+  Map result;
+  for (std::size_t k = 0; k < loops.size(); ++k) {
+    const double turns =
+        2.0 * kPi * std::round((middles[k] - plane.zero) / (2.0 * kPi));
+    Points& places = result.loops.emplace_back();
+    for (std::size_t i = 0; i < loops[k].size(); ++i) {
+      places.push_back(plane.to_plane(
+          angles[k][i] - turns, films::about_axis(wall, loops[k][i]).z()));
+    }
   }
-  const double s = std::sin(wall.half_angle);
-  const double c = std::cos(wall.half_angle);
-  return {[=](const Vec3& p) {
-            const Vec3 about = films::about_axis(wall, p);
-            const double turn = s * from_middle(about);
-            const double line = about.z() / c;
-            return Vec3(line * std::cos(turn), line * std::sin(turn), 0.0);
-          },
-          [=](const Vec3& q) {
-            return at_angle(wall, zero + angle_of(q) / s, c * q.norm());
-          },
-          {}};
+  result.from_plane = [plane](const Vec3& q) { return plane.from_plane(q); };
+  return result;
 }
 
-/// Around the origin: exp(z / R) of a cylinder, a power of the distance from a
-/// cone's apex.
-Map around(const films::BentWall& wall, const std::vector<Points>& loops,
+/// Around the origin, by a power of the distance from a cone's apex.
+Map around(const films::BentWall& cone, const std::vector<Points>& loops,
            double edge) {
   double middle = 0.0;
   std::size_t count = 0;
   for (const Points& loop : loops) {
     for (const Vec3& p : loop) {
-      middle += films::about_axis(wall, p).z();
+      middle += films::about_axis(cone, p).z();
       ++count;
     }
   }
   middle /= static_cast<double>(count);
-  const bool cone = wall.kind == films::WallKind::Cone;
-  const double power = cone ? 1.0 / std::sin(wall.half_angle) : 1.0;
-  const double unit = cone ? middle * std::tan(wall.half_angle) : wall.radius;
+  const double power = 1.0 / std::sin(cone.half_angle);
+  const double out = std::tan(cone.half_angle);
+  const double unit = middle * out;
   const auto radius = [=](double z) {
-    return unit * (cone ? std::pow(std::max(z, 0.0) / middle, power)
-                        : std::exp((z - middle) / unit));
+    return unit * std::pow(std::max(z, 0.0) / middle, power);
   };
   const auto along = [=](double r) {
-    return cone ? middle * std::pow(r / unit, 1.0 / power)
-                : middle + unit * std::log(r / unit);
+    return middle * std::pow(r / unit, 1.0 / power);
   };
   // Edges across an apex are no shorter than elsewhere.
-  const double least =
-      cone ? radius(0.5 * edge * std::cos(wall.half_angle)) : 0.0;
-  return {[=](const Vec3& p) {
-            const Vec3 about = films::about_axis(wall, p);
-            const double r = radius(about.z());
-            const double angle = angle_of(about);
-            return Vec3(r * std::cos(angle), r * std::sin(angle), 0.0);
-          },
-          [=](const Vec3& q) {
-            return at_angle(wall, angle_of(q), along(q.norm()));
-          },
-          [=](const Vec3& q) {
-            const double r = std::max(q.norm(), least);
-            const double out =
-                cone ? along(r) * std::tan(wall.half_angle) : wall.radius;
-            return r / out;
-          }};
+  const double least = radius(0.5 * edge * std::cos(cone.half_angle));
+  Map result;
+  result.loops = laid_flat(loops, [&](const Vec3& p) {
+    const Vec3 about = films::about_axis(cone, p);
+    const double r = radius(about.z());
+    const double angle = angle_of(about);
+    return Vec3(r * std::cos(angle), r * std::sin(angle), 0.0);
+  });
+  result.from_plane = [=](const Vec3& q) {
+    return films::at_angle(cone, angle_of(q), along(q.norm()));
+  };
+  result.scale = [=](const Vec3& q) {
+    const double r = std::max(q.norm(), least);
+    return r / (along(r) * out);
+  };
+  return result;
 }
 
 /// Stereographic, from opposite the pole.
-Map seen_from(const films::BentWall& sphere, const Vec3& pole) {
+Map seen_from(const films::BentWall& sphere, const Vec3& pole,
+              const std::vector<Points>& loops) {
   const films::BentWall wall{.kind = films::WallKind::Sphere,
                              .at = sphere.at,
                              .axis = pole,
                              .radius = sphere.radius};
   const double r = sphere.radius;
-  return {[=](const Vec3& p) {
-            const Vec3 about = films::about_axis(wall, p);
-            const double times = 2.0 * r / (r + about.z());
-            return Vec3(times * about.x(), times * about.y(), 0.0);
-          },
-          [=](const Vec3& q) {
-            const double far = q.squaredNorm() / (4.0 * r * r);
-            const double times = 1.0 / (1.0 + far);
-            return at_about(
-                wall, {times * q.x(), times * q.y(), r * (1.0 - far) * times});
-          },
-          [=](const Vec3& q) { return 1.0 + q.squaredNorm() / (4.0 * r * r); }};
+  Map result;
+  result.loops = laid_flat(loops, [&](const Vec3& p) {
+    const Vec3 about = films::about_axis(wall, p);
+    const double times = 2.0 * r / (r + about.z());
+    return Vec3(times * about.x(), times * about.y(), 0.0);
+  });
+  result.from_plane = [=](const Vec3& q) {
+    const double far = q.squaredNorm() / (4.0 * r * r);
+    const double times = 1.0 / (1.0 + far);
+    return films::from_about_axis(
+        wall, {times * q.x(), times * q.y(), r * (1.0 - far) * times});
+  };
+  result.scale = [=](const Vec3& q) {
+    return 1.0 + q.squaredNorm() / (4.0 * r * r);
+  };
+  return result;
 }
 
-Map map_of(const films::BentWall& wall, const std::vector<Points>& loops,
-           double side, double edge) {
-  if (wall.kind == films::WallKind::Sphere) {
-    return seen_from(wall, pole_of_face(wall, loops, side));
+/// Which loops go around the axis.
+std::vector<std::size_t> loops_around(const films::BentWall& wall,
+                                      const std::vector<Points>& loops) {
+  std::vector<std::size_t> result;
+  for (std::size_t k = 0; k < loops.size(); ++k) {
+    if (wall.kind != films::WallKind::Sphere &&
+        std::abs(turn_of(films::angles_along(wall, loops[k]))) > kPi) {
+      result.push_back(k);
+    }
   }
-  const auto turns = std::count_if(
-      loops.begin(), loops.end(),
-      [&](const Points& loop) { return std::abs(turn_of(wall, loop)) > kPi; });
-  if (turns == 0) {
-    return unrolled(wall, loops);
-  }
-  const bool apex = wall.kind == films::WallKind::Cone && turns == 1;
-  if (!apex && turns != 2) {
+  const bool cone = wall.kind == films::WallKind::Cone;
+  if (result.size() > 2 || (result.size() == 1 && !cone)) {
     throw InvalidInput(
         "a face around a cylinder needs two curves around it, and one around a "
         "cone one or two; name them with 'curve' and 'holes'");
   }
+  return result;
+}
+
+Map map_of(const films::BentWall& wall, const std::vector<Points>& loops,
+           std::size_t around_axis, double side, double edge) {
+  if (wall.kind == films::WallKind::Sphere) {
+    return seen_from(wall, pole_of_face(wall, loops, side), loops);
+  }
+  if (around_axis == 0) {
+    return unrolled(wall, loops);
+  }
   Map map = around(wall, loops, edge);
-  map.has_apex = apex;
+  map.has_apex = around_axis == 1;
   return map;
 }
 
-/// The inner vertex that is nearest to a cone's apex goes there.
-void put_on_apex(std::size_t first, const Vec3& apex, SurfaceMesh& flat) {
-  const auto nearest = std::min_element(
-      flat.points.begin() + static_cast<std::ptrdiff_t>(first),
-      flat.points.end(), [&](const Vec3& a, const Vec3& b) {
-        return (a - apex).squaredNorm() < (b - apex).squaredNorm();
-      });
+bool runs_along(const SurfaceMesh& flat, const Triangle& t, double turn) {
+  const Vec3& a = flat.points[t[0]];
+  return turn * (flat.points[t[1]] - a).cross(flat.points[t[2]] - a).z() > 0.0;
+}
+
+/// The inner vertex that is nearest to a cone's apex, the origin, goes there;
+/// where there is none, one is made, with a facet behind each edge of the rim.
+void put_on_apex(const Points& rim, std::size_t inner, SurfaceMesh& flat) {
+  const auto nearest =
+      std::min_element(flat.points.begin() + static_cast<std::ptrdiff_t>(inner),
+                       flat.points.end(), [](const Vec3& a, const Vec3& b) {
+                         return a.squaredNorm() < b.squaredNorm();
+                       });
   if (nearest != flat.points.end()) {
-    *nearest = apex;
+    nearest->setZero();
+    return;
   }
+  const double turn = polygon_area_vector(rim).z();
+  const auto count = static_cast<int>(rim.size());
+  flat.facets.clear();
+  flat.points.emplace_back(Vec3::Zero());
+  for (int k = 0; k < count; ++k) {
+    const Triangle facet = {k, (k + 1) % count, count};
+    if (inner != rim.size() || !runs_along(flat, facet, turn)) {
+      throw MeshError(
+          "a face about a cone's apex has no room for a vertex there; take "
+          "shorter edges");
+    }
+    flat.facets.push_back(facet);
+  }
+}
+
+/// The band between the two loops around a cylinder, filled along itself.
+SurfaceMesh fill_strip(const films::BentWall& wall,
+                       const std::vector<Points>& loops,
+                       const std::vector<std::size_t>& ends, double edge) {
+  const films::TubeStrip strip =
+      films::cut_open(wall, loops, {ends[0], ends[1]}, edge);
+  SurfaceMesh result;
+  for (const Points& loop : loops) {
+    result.points.insert(result.points.end(), loop.begin(), loop.end());
+  }
+  const films::WallDevelopment plane{wall};
+  for (const Vec3& q : strip.seam) {
+    result.points.push_back(plane.from_plane(q));
+  }
+  const SurfaceMesh flat = fill_disk(strip.rim, strip.holes, edge);
+  std::vector<int> ids = strip.ids;
+  for (std::size_t v = ids.size(); v < flat.points.size(); ++v) {
+    ids.push_back(static_cast<int>(result.points.size()));
+    result.points.push_back(plane.from_plane(flat.points[v]));
+  }
+  for (const Triangle& t : flat.facets) {
+    result.facets.push_back({ids[t[0]], ids[t[1]], ids[t[2]]});
+  }
+  return result;
 }
 
 }  // namespace
@@ -226,17 +271,15 @@ Vec3 pole_of_face(const films::BentWall& sphere,
 SurfaceMesh fill_bent_face(const films::BentWall& wall,
                            const std::vector<Points>& loops, double side,
                            double edge) {
-  const Map map = map_of(wall, loops, side, edge);
-  std::vector<Points> flat;
-  for (const Points& loop : loops) {
-    Points& places = flat.emplace_back();
-    for (const Vec3& p : loop) {
-      places.push_back(map.to_plane(p));
-    }
-  }
+  const std::vector<std::size_t> around_axis = loops_around(wall, loops);
   const double longest = wall.kind == films::WallKind::Cone
                              ? edge
                              : std::min(edge, kMostTurn * wall.radius);
+  if (wall.kind == films::WallKind::Cylinder && !around_axis.empty()) {
+    return fill_strip(wall, loops, around_axis, longest);
+  }
+  const Map map = map_of(wall, loops, around_axis.size(), side, edge);
+  const std::vector<Points>& flat = map.loops;
   const auto wanted = [&](const Vec3& q) {
     return map.scale ? longest * map.scale(q) : longest;
   };
@@ -260,7 +303,7 @@ SurfaceMesh fill_bent_face(const films::BentWall& wall,
     }
     SurfaceMesh filling = fill_disk(flat[part[0]], holes, longest, wanted);
     if (map.has_apex) {
-      put_on_apex(ids.size(), map.to_plane(wall.at), filling);
+      put_on_apex(flat[part[0]], ids.size(), filling);
     }
     for (std::size_t v = ids.size(); v < filling.points.size(); ++v) {
       ids.push_back(static_cast<int>(result.points.size()));

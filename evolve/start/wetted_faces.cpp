@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <set>
 
 #include <Eigen/Geometry>
@@ -71,17 +72,29 @@ films::VectorField field_of(const Texts& way, const std::string& scale,
   return {part(0), part(1), part(2)};
 }
 
+/// What a line integral adds beside a wall's own: by x (r - from), twice the
+/// cone of a part in `by` to the origin, `from` being beside the rims for the
+/// sake of digits: it adds nothing along loops.
+struct Rest {
+  Vec3 by = Vec3::Zero();
+  Vec3 from = Vec3::Zero();
+
+  Texts texts() const { return crossed(by, from_point(from)); }
+};
+
 /// factor u x (r - c) / (|r - c| (|r - c| + u . (r - c))): along a loop on a
-/// sphere about c the factor x the solid angle around u. Beside it
-/// rest x (r - c) / 6, twice the cone of a part in `rest` to the origin.
-films::VectorField angle_field(const Vec3& u, const Vec3& c, double factor,
-                               const Vec3& rest) {
-  const Texts r = from_point(c);
+/// sphere about c the factor x the solid angle around u. By q = r - c - R u,
+/// which is small where the sphere is large beside its face.
+films::VectorField angle_field(const Vec3& u, const films::BentWall& sphere,
+                               double factor, const Rest& rest) {
+  const Texts q = from_point(sphere.at + sphere.radius * u);
+  const std::string up = along(u, q);
   const std::string size =
-      fmt::format("sqrt(({0})^2+({1})^2+({2})^2)", r[0], r[1], r[2]);
-  const std::string scale =
-      fmt::format("({:.17g})/({}*({}+{}))", factor, size, size, along(u, r));
-  return field_of(crossed(u, r), scale, crossed(rest, r));
+      fmt::format("sqrt(({0})^2+({1})^2+({2})^2+({3:.17g})*(2*{4}+({3:.17g})))",
+                  q[0], q[1], q[2], sphere.radius, up);
+  const std::string scale = fmt::format("({:.17g})/({}*({}+{}+({:.17g})))",
+                                        factor, size, size, up, sphere.radius);
+  return field_of(crossed(u, q), scale, rest.texts());
 }
 
 /// Around an axis d through c, with z along it and t the angle about it:
@@ -91,7 +104,7 @@ struct AxisForm {
   std::array<double, 3> turn = {0.0, 0.0, 0.0};
 };
 films::VectorField axis_field(const films::BentWall& wall, const AxisForm& form,
-                              const Vec3& rest) {
+                              const Rest& rest) {
   const Texts r = from_point(wall.at);
   const std::string z = along(wall.axis, r);
   const std::string across =
@@ -100,7 +113,27 @@ films::VectorField axis_field(const films::BentWall& wall, const AxisForm& form,
       "(({:.17g})*{}-(({:.17g})*{}+({:.17g})*({})^2+({:.17g})*({})^3)/{})",
       form.moment, z, form.turn[0], z, form.turn[1], z, form.turn[2], z,
       across);
-  return field_of(crossed(wall.axis, r), scale, crossed(rest, r));
+  return field_of(crossed(wall.axis, r), scale, rest.texts());
+}
+
+Vec3 mean_place(const std::vector<Points>& rims) {
+  Vec3 sum = Vec3::Zero();
+  std::size_t count = 0;
+  for (const Points& rim : rims) {
+    sum = std::accumulate(rim.begin(), rim.end(), sum);
+    count += rim.size();
+  }
+  return sum / static_cast<double>(count);
+}
+
+/// The bent wall of a cap, told beside its rims.
+std::optional<films::BentWall> wall_beside(const films::CapSpec& cap,
+                                           const std::vector<Points>& rims) {
+  std::optional<films::BentWall> result = cap.wall->bent();
+  if (result) {
+    result = films::told_beside(*result, mean_place(rims));
+  }
+  return result;
 }
 
 /// Along the rim of a face the integrals of its energy per area and of what it
@@ -114,15 +147,15 @@ RimFields rim_fields(const films::WettedWall& face, double tension,
                      const std::vector<Points>& rims) {
   const films::BentWall& wall = *face.bent;
   const double r = wall.radius;
-  const Vec3 none = Vec3::Zero();
+  const Rest none;
   // Cones to a point p of the wall's own, and p . F / 3 for the area vector F
   // of the rim's polygon.
-  const Vec3 rest = -wall.at / 6.0;
+  const Rest rest{-wall.at / 6.0, mean_place(rims)};
   switch (wall.kind) {
     case films::WallKind::Sphere: {
       const Vec3 pole = pole_of_face(wall, rims, face.side);
-      return {angle_field(pole, wall.at, face.side * tension * r * r, none),
-              angle_field(pole, wall.at, -r * r * r / 3.0, rest)};
+      return {angle_field(pole, wall, face.side * tension * r * r, none),
+              angle_field(pole, wall, -r * r * r / 3.0, rest)};
     }
     case films::WallKind::Cone: {
       const double t = std::tan(wall.half_angle);
@@ -181,15 +214,17 @@ void require_on_wall(const films::CapSpec& cap, const std::string& curve,
     loop.push_back(points[v]);
   }
   const double reach = wall_reach(*cap.wall, bounding_diagonal(loop));
+  const auto bent = wall_beside(cap, {loop});
   for (const int v : rim) {
-    const double off = off_wall(*cap.wall, points[v]);
+    const double off = bent ? films::distance_outside(*bent, points[v])
+                            : off_wall(*cap.wall, points[v]);
     if (!(std::abs(off) <= reach)) {
       throw InvalidInput(fmt::format(
           "curve '{}' is {:.3g} off the wall of '{}' at ({:.6g}, {:.6g}, "
           "{:.6g}); films that slide on it begin on curves that lie on it",
           curve, off, cap.name, points[v].x(), points[v].y(), points[v].z()));
     }
-    if (const auto bent = cap.wall->bent()) {
+    if (bent) {
       points[v] = films::onto_wall(*bent, points[v]);
     } else {
       points[v] -= off * unit_normal(cap);
@@ -417,8 +452,11 @@ void fill_on_wall(const std::vector<std::vector<int>>& loops, double edge,
 
 /// The level set of a cap's wall as a constraint set: planes that cut have one
 /// for all the faces in them.
-int wall_set(const films::CapSpec& cap, films::FilmComplex& complex) {
-  const Expression formula = formula_of(*cap.wall);
+int wall_set(const films::CapSpec& cap,
+             const std::optional<films::BentWall>& bent,
+             films::FilmComplex& complex) {
+  const Expression formula =
+      bent ? films::wall_formula(*bent) : formula_of(*cap.wall);
   for (std::size_t s = 0; cap.wall->cuts && s < complex.constraint_sets.size();
        ++s) {
     const std::vector<int>& set = complex.constraint_sets[s];
@@ -430,7 +468,7 @@ int wall_set(const films::CapSpec& cap, films::FilmComplex& complex) {
   complex.constraint_sets.push_back(
       {static_cast<int>(complex.level_sets.size())});
   complex.level_sets.push_back(
-      {.name = cap.name, .formula = formula, .bent = cap.wall->bent()});
+      {.name = cap.name, .formula = formula, .bent = bent});
   return static_cast<int>(complex.constraint_sets.size()) - 1;
 }
 
@@ -458,9 +496,10 @@ void slide_on_wall(const films::FilmSystem& system, const films::CapSpec& cap,
   if (area_vector(complex.mesh, label).dot(n) < 0.0) {
     n = -n;
   }
-  const int set = wall_set(cap, complex);
+  const auto bent = wall_beside(cap, places_of(rims, complex.mesh.points));
+  const int set = wall_set(cap, bent, complex);
   films::ComplexSurface& face = complex.surfaces[label];
-  face.wetted = films::WettedWall{.normal = n, .bent = cap.wall->bent()};
+  face.wetted = films::WettedWall{.normal = n, .bent = bent};
   if (face.wetted->bent) {
     face.wetted->side =
         outward_area(complex.mesh, label, *face.wetted->bent) < 0.0 ? -1.0
@@ -504,7 +543,7 @@ SurfaceMesh fill_wetted_face(const films::CapSpec& cap,
     std::iota(all.begin(), all.end(), 0);
     require_on_wall(cap, curves[k], all, rims[k]);
   }
-  return filling_of(*cap.wall->bent(), cap.name, rims, 0.0, edge);
+  return filling_of(*wall_beside(cap, rims), cap.name, rims, 0.0, edge);
 }
 
 bool has_wetted_faces(const films::FilmComplex& complex) {

@@ -1,14 +1,18 @@
 // Films that slide on cylinders, spheres and cones, by their closed forms.
+#include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <numbers>
 #include <string>
 #include <vector>
 
+#include <Eigen/Geometry>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "core/error.h"
+#include "core/geometry/edge_key.h"
 #include "core/geometry/surface_mesh.h"
 #include "evolve/frozen/film_model.h"
 #include "evolve/start/bent_fill.h"
@@ -180,22 +184,29 @@ TEST(BentWalls, ADropOnAConeIsASphereAtItsAngle) {
   expect_spherical(on_tip(radians(70.0)), 4e-3, "tip");
 }
 
-/// A plug of liquid in a tube, which goes where it likes along it.
-TEST(BentWalls, APlugInATubeHasItsMenisci) {
-  const double angle = radians(70.0);
+films::FilmSystem plug_in(double angle, double length, const Vec3& at) {
   const double r = -1.0 / std::cos(angle);  // hollow
   const double bowl = cap_volume(-r, -r - std::sqrt(r * r - 1.0));
   films::FilmSystem system;
-  system.curves = {{"low", curves::Circle{on_axis(-0.8), kAxis, 1.0}},
-                   {"high", curves::Circle{on_axis(0.8), kAxis, 1.0}}};
+  system.curves = {{"low", curves::Circle{on_axis(-0.5 * length), kAxis, 1.0}},
+                   {"high", curves::Circle{on_axis(0.5 * length), kAxis, 1.0}}};
   system.films = {{"bottom", films::FilmKind::Disk, {"low"}, kTension},
                   {"top", films::FilmKind::Disk, {"high"}, kTension}};
   system.caps = {{.name = "face", .curve = "low", .more = {"high"}}};
   system.caps[0].wall = wall_of(films::WallKind::Cylinder);
+  system.caps[0].wall->at = at;
   system.caps[0].wall->tension = -kTension * std::cos(angle);
-  const double length = 1.6;
   system.bodies = {
       {"plug", {"face", "bottom", "top"}, kPi * length - 2.0 * bowl, {}}};
+  return system;
+}
+
+/// A plug of liquid in a tube, which goes where it likes along it.
+TEST(BentWalls, APlugInATubeHasItsMenisci) {
+  const double angle = radians(70.0);
+  const double r = -1.0 / std::cos(angle);  // hollow
+  const double length = 1.6;
+  const films::FilmSystem system = plug_in(angle, length, kOrigin);
   std::vector<double> area_errors;
   for (const int refinements : {0, 1, 2}) {
     const frozen::FilmModel model = frozen::FilmModel::freeze(
@@ -213,6 +224,190 @@ TEST(BentWalls, APlugInATubeHasItsMenisci) {
   for (const int k : {0, 1}) {
     EXPECT_GT(area_errors[k] / area_errors[k + 1], kSecondOrder);
   }
+}
+
+/// Rims whose points ran together on one side would cut the tube's discs off.
+TEST(BentWalls, APlugOfAnyLengthStandsByCoarseEdges) {
+  const double angle = radians(70.0);
+  for (const double length : {8.0, 20.0}) {
+    const frozen::FilmModel model = frozen::FilmModel::freeze(
+        plug_in(angle, length, kOrigin), {.edge = 0.45, .refinements = 0});
+    ASSERT_FALSE(model.reference().failure)
+        << length << ": " << model.reference().failure->message;
+    EXPECT_NEAR(model.reference().report.bodies[0].pressure,
+                -2.0 * kTension * std::cos(angle), 0.03 * kTension)
+        << length;
+    EXPECT_NEAR(model.areas(model.reference().points)[2], 2.0 * kPi * length,
+                0.6)
+        << length;
+  }
+}
+
+TEST(BentWalls, WhereATubesPointLiesAlongItsAxisCountsForNothing) {
+  const double angle = radians(70.0);
+  std::vector<double> pressures;
+  std::vector<double> areas;
+  for (const double along : {0.0, 1e5}) {
+    const films::FilmSystem system =
+        plug_in(angle, 2.0, kOrigin + along * kAxis);
+    const frozen::FilmModel model =
+        frozen::FilmModel::freeze(system, {.edge = 0.45, .refinements = 0});
+    ASSERT_FALSE(model.reference().failure)
+        << along << ": " << model.reference().failure->message;
+    pressures.push_back(model.reference().report.bodies[0].pressure);
+    areas.push_back(model.areas(model.reference().points)[2]);
+    // A design with the wall that it has is none that moves it.
+    EXPECT_FALSE(model.settle(system).failure);
+    films::FilmSystem moved = system;
+    moved.caps[0].wall->at += 0.1 * kAxis;
+    EXPECT_FALSE(model.settle(moved).failure);
+    moved.caps[0].wall->at += 1e-6 * kAxis.unitOrthogonal();
+    EXPECT_THROW(model.settle(moved), InvalidInput);
+  }
+  EXPECT_NEAR(pressures[1], pressures[0], 1e-9 * std::abs(pressures[0]));
+  EXPECT_NEAR(areas[1], areas[0], 1e-9 * areas[0]);
+}
+
+/// A ball 1000 times as large as its drop's rim is nearly a plane.
+TEST(BentWalls, ADropOnALargeBallIsThatOnAPlane) {
+  const double angle = radians(80.0);
+  const double radius = 1000.0;
+  const double r = 1.0 / std::sin(angle);
+  films::FilmWall wall = wall_of(films::WallKind::Sphere);
+  wall.radius = radius;
+  wall.at = on_axis(-radius);
+  films::FilmSystem system =
+      on_wall(wall, angle, -0.5 * 0.81 / radius, 0.9,
+              cap_volume(r, r * (1.0 - std::cos(angle))), 1.0);
+  std::vector<double> pressures;
+  std::vector<double> areas;
+  for (const bool plane : {false, true}) {
+    if (plane) {
+      system = on_wall({.at = kOrigin, .normal = kAxis}, angle, 0.0, 0.9,
+                       cap_volume(r, r * (1.0 - std::cos(angle))), 1.0);
+    }
+    const frozen::FilmModel model =
+        frozen::FilmModel::freeze(system, {.edge = 0.3, .refinements = 1});
+    ASSERT_FALSE(model.reference().failure)
+        << plane << ": " << model.reference().failure->message;
+    pressures.push_back(model.reference().report.bodies[0].pressure);
+    areas.push_back(model.areas(model.reference().points)[1]);
+  }
+  // By the rim's radius over the ball's.
+  EXPECT_NEAR(pressures[0], pressures[1], 2e-3 * pressures[1]);
+  EXPECT_NEAR(areas[0], areas[1], 3e-3 * areas[1]);
+}
+
+/// The volume in a funnel's tip with a film of two facets' edges runs over the
+/// apex: a design without a film, not an error.
+TEST(BentWalls, ARimThatRunsOffItsWallIsAFailedDesign) {
+  const Drop drop = in_funnel(radians(110.0));
+  frozen::FilmModel model =
+      frozen::FilmModel::freeze(drop.system, {.edge = 0.25, .refinements = 0});
+  ASSERT_FALSE(model.reference().failure);
+  films::FilmSystem less = drop.system;
+  less.bodies[0].volume = 1e-7 * *less.bodies[0].volume;
+  const settle::FilmState state = model.settle(less);
+  ASSERT_TRUE(state.failure);
+  EXPECT_THAT(state.failure->message, HasSubstr("no equilibrium"));
+}
+
+/// Every edge of a closed strip has two facets but those of its rims.
+void expect_filled(const SurfaceMesh& mesh, std::size_t rims, double area,
+                   double accuracy) {
+  std::map<Edge, int> sides;
+  double sum = 0.0;
+  for (const Triangle& t : mesh.facets) {
+    for (int k = 0; k < 3; ++k) {
+      ++sides[edge_key(t[k], t[(k + 1) % 3])];
+    }
+    sum += 0.5 * (mesh.points[t[1]] - mesh.points[t[0]])
+                     .cross(mesh.points[t[2]] - mesh.points[t[0]])
+                     .norm();
+  }
+  std::size_t open = 0;
+  for (const auto& [edge, count] : sides) {
+    EXPECT_LE(count, 2);
+    open += count == 1 ? 1 : 0;
+  }
+  EXPECT_EQ(open, rims);
+  EXPECT_NEAR(sum, area, accuracy * area);
+}
+
+Points ring(double z, int count, double slope) {
+  Points result;
+  const Vec3 x = kAxis.unitOrthogonal();
+  for (int k = 0; k < count; ++k) {
+    const double t = 2.0 * kPi * k / count;
+    result.emplace_back(on_axis(z + slope * std::cos(t)) + std::cos(t) * x +
+                        std::sin(t) * kAxis.cross(x));
+  }
+  return result;
+}
+
+films::BentWall tube() { return *wall_of(films::WallKind::Cylinder).bent(); }
+
+TEST(BentWalls, TubesOfAnyLengthAreFilled) {
+  for (const double length : {0.5, 20.0, 80.0}) {
+    for (const bool turned : {false, true}) {
+      std::vector<Points> loops = {ring(0.0, 20, 0.1), ring(length, 24, -0.1)};
+      if (turned) {
+        std::reverse(loops[1].begin(), loops[1].end());
+      }
+      const SurfaceMesh mesh = start::fill_bent_face(tube(), loops, 0.0, 0.4);
+      expect_filled(mesh, 44, 2.0 * kPi * length, 0.03);
+      for (const Vec3& p : mesh.points) {
+        EXPECT_NEAR(films::distance_outside(tube(), p), 0.0, 1e-12);
+      }
+    }
+  }
+}
+
+/// Of a face nearly around the axis the mean of its points says nothing about
+/// its middle.
+TEST(BentWalls, FacesNearlyAroundATubeAreFilled) {
+  const Vec3 x = kAxis.unitOrthogonal();
+  const auto at = [&](double angle, double z) {
+    return Vec3(on_axis(z) + std::cos(angle) * x +
+                std::sin(angle) * kAxis.cross(x));
+  };
+  for (const double wrap : {140.0, 250.0, 350.0}) {
+    for (const double from : {0.0, 2.0, 4.0}) {
+      Points loop;
+      // More points at one end, which pull the mean there.
+      const double angle = radians(wrap);
+      for (int k = 0; k < 40; ++k) {
+        loop.push_back(at(from + angle * k / 40.0, 0.0));
+      }
+      for (int k = 0; k < 60; ++k) {
+        loop.push_back(at(from + angle, k / 60.0));
+      }
+      for (int k = 0; k < 40; ++k) {
+        loop.push_back(at(from + angle * (40 - k) / 40.0, 1.0));
+      }
+      for (int k = 0; k < 10; ++k) {
+        loop.push_back(at(from, 1.0 - k / 10.0));
+      }
+      expect_filled(start::fill_bent_face(tube(), {loop}, 0.0, 0.3),
+                    loop.size(), angle, 0.02);
+    }
+  }
+}
+
+TEST(BentWalls, AFaceOfFewEdgesAboutAnApexHasAVertexThere) {
+  const films::BentWall cone = *wall_of(films::WallKind::Cone).bent();
+  Points loop;
+  const Vec3 x = kAxis.unitOrthogonal();
+  for (int k = 0; k < 5; ++k) {
+    const double t = 2.0 * kPi * k / 5.0;
+    loop.push_back(films::onto_wall(
+        cone,
+        on_axis(1.0) + 0.5 * (std::cos(t) * x + std::sin(t) * kAxis.cross(x))));
+  }
+  const SurfaceMesh mesh = start::fill_bent_face(cone, {loop}, 0.0, 10.0);
+  ASSERT_EQ(mesh.points.size(), 6U);
+  EXPECT_NEAR((mesh.points[5] - kOrigin).norm(), 0.0, 1e-12);
+  EXPECT_EQ(mesh.facets.size(), 5U);
 }
 
 }  // namespace
