@@ -14,8 +14,11 @@
 #include "core/error.h"
 #include "core/geometry/edge_key.h"
 #include "core/geometry/surface_mesh.h"
+#include "evolve/energy/energy.h"
 #include "evolve/frozen/film_model.h"
+#include "evolve/settle/equilibrium.h"
 #include "evolve/start/bent_fill.h"
+#include "evolve/start/start_complex.h"
 #include "evolve/start/wetted_faces.h"
 
 namespace meniscus::bent_walls_test {
@@ -137,7 +140,7 @@ void expect_spherical(const Drop& drop, double accuracy,
   std::vector<double> area_errors;
   for (const int refinements : {0, 1, 2}) {
     const frozen::FilmModel model = frozen::FilmModel::freeze(
-        drop.system, {.edge = 0.2, .refinements = refinements});
+        drop.system, {.edge = 0.28, .refinements = refinements});
     ASSERT_FALSE(model.reference().failure)
         << name << ": " << model.reference().failure->message;
     const settle::FilmReport& report = model.reference().report;
@@ -170,18 +173,18 @@ void expect_spherical(const Drop& drop, double accuracy,
 }
 
 TEST(BentWalls, ADropOnABallIsASphereAtItsAngle) {
-  expect_spherical(on_ball(radians(80.0), 0.8), 4e-3, "80 deg");
-  expect_spherical(on_ball(radians(120.0), 1.0), 4e-3, "120 deg");
+  expect_spherical(on_ball(radians(80.0), 0.8), 5e-3, "80 deg");
+  expect_spherical(on_ball(radians(120.0), 1.0), 5e-3, "120 deg");
 }
 
 TEST(BentWalls, ADropInABowlIsASphereAtItsAngle) {
-  expect_spherical(in_bowl(radians(110.0), 1.2), 4e-3, "110 deg");
+  expect_spherical(in_bowl(radians(110.0), 1.2), 5e-3, "110 deg");
 }
 
 TEST(BentWalls, ADropOnAConeIsASphereAtItsAngle) {
-  expect_spherical(in_funnel(radians(110.0)), 4e-3, "funnel");
-  expect_spherical(in_funnel(radians(40.0)), 4e-3, "funnel that wets");
-  expect_spherical(on_tip(radians(70.0)), 4e-3, "tip");
+  expect_spherical(in_funnel(radians(110.0)), 5e-3, "funnel");
+  expect_spherical(in_funnel(radians(40.0)), 5e-3, "funnel that wets");
+  expect_spherical(on_tip(radians(70.0)), 5e-3, "tip");
 }
 
 films::FilmSystem plug_in(double angle, double length, const Vec3& at) {
@@ -210,7 +213,7 @@ TEST(BentWalls, APlugInATubeHasItsMenisci) {
   std::vector<double> area_errors;
   for (const int refinements : {0, 1, 2}) {
     const frozen::FilmModel model = frozen::FilmModel::freeze(
-        system, {.edge = 0.25, .refinements = refinements});
+        system, {.edge = 0.35, .refinements = refinements});
     ASSERT_FALSE(model.reference().failure)
         << model.reference().failure->message;
     EXPECT_EQ(model.reference().report.index, 0);
@@ -268,10 +271,10 @@ TEST(BentWalls, WhereATubesPointLiesAlongItsAxisCountsForNothing) {
   EXPECT_NEAR(areas[1], areas[0], 1e-9 * areas[0]);
 }
 
-/// A ball 1000 times as large as its drop's rim is nearly a plane.
+/// A ball 10,000 times as large as its drop's rim is nearly a plane.
 TEST(BentWalls, ADropOnALargeBallIsThatOnAPlane) {
   const double angle = radians(80.0);
-  const double radius = 1000.0;
+  const double radius = 10000.0;
   const double r = 1.0 / std::sin(angle);
   films::FilmWall wall = wall_of(films::WallKind::Sphere);
   wall.radius = radius;
@@ -287,29 +290,33 @@ TEST(BentWalls, ADropOnALargeBallIsThatOnAPlane) {
                        cap_volume(r, r * (1.0 - std::cos(angle))), 1.0);
     }
     const frozen::FilmModel model =
-        frozen::FilmModel::freeze(system, {.edge = 0.3, .refinements = 1});
+        frozen::FilmModel::freeze(system, {.edge = 0.2, .refinements = 0});
     ASSERT_FALSE(model.reference().failure)
         << plane << ": " << model.reference().failure->message;
     pressures.push_back(model.reference().report.bodies[0].pressure);
     areas.push_back(model.areas(model.reference().points)[1]);
   }
   // By the rim's radius over the ball's.
-  EXPECT_NEAR(pressures[0], pressures[1], 2e-3 * pressures[1]);
-  EXPECT_NEAR(areas[0], areas[1], 3e-3 * areas[1]);
+  EXPECT_NEAR(pressures[0], pressures[1], 1e-3 * pressures[1]);
+  EXPECT_NEAR(areas[0], areas[1], 1e-3 * areas[1]);
 }
 
-/// The volume in a funnel's tip with a film of two facets' edges runs over the
-/// apex: a design without a film, not an error.
-TEST(BentWalls, ARimThatRunsOffItsWallIsAFailedDesign) {
-  const Drop drop = in_funnel(radians(110.0));
-  frozen::FilmModel model =
-      frozen::FilmModel::freeze(drop.system, {.edge = 0.25, .refinements = 0});
-  ASSERT_FALSE(model.reference().failure);
-  films::FilmSystem less = drop.system;
-  less.bodies[0].volume = 1e-7 * *less.bodies[0].volume;
-  const settle::FilmState state = model.settle(less);
+/// A design without a film that names the wall, not an error that ends a study.
+TEST(BentWalls, ARimBeyondAnApexIsAFailedDesign) {
+  const films::FilmComplex complex =
+      start::build_start(in_funnel(radians(110.0)).system, 0.3);
+  const energy::FilmEnergy energy(complex);
+  ASSERT_TRUE(energy.space().has_bent_walls());
+  Points base = complex.mesh.points;
+  const Points directions = energy.space().directions(base);
+  base[energy.space().walled()[0]] = on_axis(-1.0);
+  const settle::FilmState state =
+      settle::settle_along(energy, complex, energy::targets_of(complex), base,
+                           directions, {}, 0.0, {});
   ASSERT_TRUE(state.failure);
-  EXPECT_THAT(state.failure->message, HasSubstr("no equilibrium"));
+  EXPECT_EQ(state.failure->kind, FailureKind::FilmNotFound);
+  EXPECT_THAT(state.failure->message,
+              HasSubstr("the rim on the wall of 'face' runs off it"));
 }
 
 /// Every edge of a closed strip has two facets but those of its rims.
