@@ -81,6 +81,12 @@ WallFacet<Scalar> about_axis(const films::BentWall& wall,
           axes[k][0] * from[0] + axes[k][1] * from[1] + axes[k][2] * from[2];
     }
   }
+  if (wall.kind == films::WallKind::Cylinder) {
+    const double first = number(result[0][2]);
+    for (WallPlace<Scalar>& place : result) {
+      place[2] = place[2] - first;
+    }
+  }
   return result;
 }
 
@@ -111,32 +117,46 @@ Scalar solid_angle(const WallFacet<Scalar>& c) {
   return 2.0 * atan2(det(c), below);
 }
 
-/// Signed by whether the facet is counter-clockwise seen from outside.
-template <class Scalar>
-Scalar area_outward(const films::BentWall& wall,
-                    const WallFacet<Scalar>& corners) {
-  const WallFacet<Scalar> c = about_axis(wall, corners);
-  if (wall.kind == films::WallKind::Sphere) {
-    return wall.radius * wall.radius * solid_angle(c);
-  }
+/// Of the edges' (a, b, turn); those that end at an apex add nothing.
+template <class Scalar, class OfEdge>
+Scalar sum_over_edges(const films::BentWall& wall, const WallFacet<Scalar>& c,
+                      const OfEdge& of_edge) {
   Scalar sum = 0.0;
   for (int i = 0; i < 3; ++i) {
     const WallPlace<Scalar>& a = c[i];
     const WallPlace<Scalar>& b = c[(i + 1) % 3];
-    if (is_apex(wall, a) || is_apex(wall, b)) {
-      continue;  // it adds nothing, but an angle is not defined there
-    }
-    const Turn<Scalar> turn(a, b);
-    if (wall.kind == films::WallKind::Cylinder) {
-      const double first = 2.0 * number(c[0][2]);
-      sum = sum - 0.5 * wall.radius * (a[2] + b[2] - first) * turn.angle;
-    } else {
-      const double line = 1.0 / std::cos(wall.half_angle);
-      sum = sum - 0.5 * line * line * a[2] * b[2] *
-                      sin(std::sin(wall.half_angle) * turn.angle);
+    if (!is_apex(wall, a) && !is_apex(wall, b)) {
+      sum = sum + of_edge(a, b, Turn<Scalar>(a, b));
     }
   }
   return sum;
+}
+
+/// Signed by whether the facet is counter-clockwise seen from outside.
+template <class Scalar>
+Scalar area_outward(const films::BentWall& wall,
+                    const WallFacet<Scalar>& corners) {
+  using Place = WallPlace<Scalar>;
+  const WallFacet<Scalar> c = about_axis(wall, corners);
+  if (wall.kind == films::WallKind::Sphere) {
+    return wall.radius * wall.radius * solid_angle(c);
+  }
+  if (wall.kind == films::WallKind::Cylinder) {
+    return -0.5 * wall.radius *
+           sum_over_edges(
+               wall, c,
+               [](const Place& a, const Place& b, const Turn<Scalar>& turn) {
+                 return (a[2] + b[2]) * turn.angle;
+               });
+  }
+  const double s = std::sin(wall.half_angle);
+  const double line = 1.0 / std::cos(wall.half_angle);
+  return -0.5 * line * line *
+         sum_over_edges(
+             wall, c,
+             [s](const Place& a, const Place& b, const Turn<Scalar>& turn) {
+               return a[2] * b[2] * sin(s * turn.angle);
+             });
 }
 
 /// Between the flat facet and the wall. With z along the axis and the angle t
@@ -145,36 +165,28 @@ Scalar area_outward(const films::BentWall& wall,
 /// cone beyond its plane with the apex tan^2 za zb (za + zb) (sin t - t) / 12.
 template <class Scalar>
 Scalar lens(const films::BentWall& wall, const WallFacet<Scalar>& corners) {
-  WallFacet<Scalar> c = about_axis(wall, corners);
+  using Place = WallPlace<Scalar>;
+  const WallFacet<Scalar> c = about_axis(wall, corners);
+  const Scalar flat = det(c) / 6.0;
   if (wall.kind == films::WallKind::Sphere) {
     const double r = wall.radius;
-    return r * r * r / 3.0 * solid_angle(c) - det(c) / 6.0;
+    return r * r * r / 3.0 * solid_angle(c) - flat;
   }
   if (wall.kind == films::WallKind::Cylinder) {
-    const double first = number(c[0][2]);
-    for (WallPlace<Scalar>& place : c) {
-      place[2] = place[2] - first;
-    }
+    const double square = wall.radius * wall.radius;
+    const Scalar behind = sum_over_edges(
+        wall, c,
+        [square](const Place& a, const Place& b, const Turn<Scalar>& turn) {
+          return (a[2] + b[2]) * (turn.cross - 3.0 * square * turn.angle);
+        });
+    return behind / 12.0 - flat;
   }
-  Scalar sum = -1.0 / 6.0 * det(c);
-  for (int i = 0; i < 3; ++i) {
-    const WallPlace<Scalar>& a = c[i];
-    const WallPlace<Scalar>& b = c[(i + 1) % 3];
-    if (is_apex(wall, a) || is_apex(wall, b)) {
-      continue;  // it adds nothing, but an angle is not defined there
-    }
-    const Turn<Scalar> turn(a, b);
-    if (wall.kind == films::WallKind::Cylinder) {
-      const double square = wall.radius * wall.radius;
-      sum =
-          sum + (a[2] + b[2]) / 12.0 * (turn.cross - 3.0 * square * turn.angle);
-    } else {
-      const double t = std::tan(wall.half_angle);
-      sum = sum +
-            t * t / 12.0 * a[2] * b[2] * (a[2] + b[2]) * sin_less(turn.angle);
-    }
-  }
-  return sum;
+  const double t = std::tan(wall.half_angle);
+  const Scalar behind = sum_over_edges(
+      wall, c, [](const Place& a, const Place& b, const Turn<Scalar>& turn) {
+        return a[2] * b[2] * (a[2] + b[2]) * sin_less(turn.angle);
+      });
+  return t * t / 12.0 * behind - flat;
 }
 
 /// A function of a facet's corners as a term, by duals.

@@ -57,7 +57,7 @@ Place<Scalar> nearest(const BentWall& wall, const Place<Scalar>& place) {
 
 }  // namespace
 
-BentWall told_beside(BentWall wall, const Vec3& place) {
+BentWall with_origin_beside(BentWall wall, const Vec3& place) {
   if (wall.kind == WallKind::Cylinder) {
     wall.at += wall.axis.dot(place - wall.at) * wall.axis;
   }
@@ -69,7 +69,7 @@ bool is_same(const BentWall& a, const BentWall& b) {
       a.half_angle != b.half_angle || a.axis != b.axis) {
     return false;
   }
-  const double off = (told_beside(a, b.at).at - b.at).norm();
+  const double off = (with_origin_beside(a, b.at).at - b.at).norm();
   return off <= kSameAxis * (a.at.norm() + b.at.norm());
 }
 

@@ -20,11 +20,11 @@ struct BentWall {
   double half_angle = 0.5;    // of a cone, between its axis and its lines [rad]
 };
 
-/// The same wall; a cylinder told by the point of its axis beside `place`, for
-/// `at` far along it costs digits.
-BentWall told_beside(BentWall wall, const Vec3& place);
+/// The same wall; a cylinder's `at` is the point of its axis beside `place`, as
+/// one far along it costs digits.
+BentWall with_origin_beside(BentWall wall, const Vec3& place);
 
-/// The same surface, wherever along its axis a cylinder is told?
+/// The same surface, wherever along its axis a cylinder has its `at`?
 bool is_same(const BentWall& a, const BentWall& b);
 
 /// 0 on the wall, of unit slope there, above 0 outside [length]; over x, y, z.

@@ -7,7 +7,7 @@
 
 namespace meniscus::films {
 
-/// The point of space that about_axis() tells so.
+/// The point of space that about_axis() gives these coordinates.
 Vec3 from_about_axis(const BentWall& wall, const Vec3& about);
 
 /// Where a cylinder or cone is so far along its axis [length], at an angle

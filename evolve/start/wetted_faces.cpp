@@ -131,7 +131,7 @@ std::optional<films::BentWall> wall_beside(const films::CapSpec& cap,
                                            const std::vector<Points>& rims) {
   std::optional<films::BentWall> result = cap.wall->bent();
   if (result) {
-    result = films::told_beside(*result, mean_place(rims));
+    result = films::with_origin_beside(*result, mean_place(rims));
   }
   return result;
 }
