@@ -556,7 +556,7 @@ class Trouble(ProgramTest):
         return self.folder / out
 
     def test_another_edge_and_the_files_names(self):
-        run = self.outstrut()
+        run = self.run_strut()
         for name, edge in (("3mf", "9"), ("msh", "18")):
             done = self.call("export", run, "--format", name, "--edge", edge)
             self.expect(done, 0)
@@ -564,7 +564,7 @@ class Trouble(ProgramTest):
             self.assertTrue((run / f"part_{edge}.{name}").exists())
 
     def test_what_is_no_run_is_told(self):
-        run = self.outstrut()
+        run = self.run_strut()
         self.expect(self.call("export", run, "--format", "stp"), 2,
                     "'stp' is no format; there are stl, 3mf, obj, step, .*vtu")
         self.expect(self.call("export", self.folder, "--format", "stl"), 2,
@@ -586,7 +586,7 @@ class Trouble(ProgramTest):
             self.assertEqual(sorted(run.iterdir()), before)
 
     def test_a_read_only_folder_is_told(self):
-        run = self.outstrut()
+        run = self.run_strut()
         # Root writes everywhere: somebody else then, who may not reach the
         # build's folder.
         other = {"user": 65534} if os.geteuid() == 0 else {}
