@@ -393,9 +393,8 @@ std::string FilmSpace::off_walls(std::size_t k, const Vec3& at) const {
   }
   return fmt::format(
       "the rim on the wall of '{}' runs off it from {}, over its axis, center "
-      "or "
-      "apex or far away; start on a curve nearer to where the film rests, or "
-      "take shorter edges, another volume or contact angle",
+      "or apex or far away; start on a curve nearer to where the film rests, "
+      "or take shorter edges, another volume or contact angle",
       level_sets_[walls_[k].level_sets[0]].name, place);
 }
 

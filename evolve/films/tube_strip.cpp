@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 
 #include "core/error.h"
+#include "core/geometry/plane_points.h"
 #include "evolve/films/wall_development.h"
 
 namespace meniscus::films {
@@ -33,7 +34,6 @@ class TubeLoops {
     }
   }
 
-  const WallDevelopment& plane() const { return plane_; }
   double turn(std::size_t loop) const {
     return angles_[loop].back() - angles_[loop].front();
   }
@@ -83,10 +83,6 @@ class TubeLoops {
   std::vector<int> first_id_;
 };
 
-double side_of(const Vec3& a, const Vec3& b, const Vec3& p) {
-  return (b - a).cross(p - a).z();
-}
-
 /// Does a line from a to b of an unrolled tube cross a loop?
 bool crosses(const TubeLoops& tube, std::size_t loop, const Vec3& a,
              const Vec3& b) {
@@ -97,8 +93,9 @@ bool crosses(const TubeLoops& tube, std::size_t loop, const Vec3& a,
     const double by = tube.beside(0.5 * (p + q), 0.5 * (a + b));
     p.x() += by;
     q.x() += by;
-    if (side_of(a, b, p) * side_of(a, b, q) <= 0.0 &&
-        side_of(p, q, a) * side_of(p, q, b) <= 0.0) {
+    const std::array<double, 2> sides =
+        segment_sides(a.head<2>(), b.head<2>(), p.head<2>(), q.head<2>());
+    if (sides[0] <= 0.0 && sides[1] <= 0.0) {
       return true;
     }
   }

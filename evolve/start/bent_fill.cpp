@@ -211,6 +211,20 @@ void put_on_apex(const Points& rim, std::size_t inner, SurfaceMesh& flat) {
   }
 }
 
+/// Facets filled in the plane, of which the first points are `ids` of `mesh`;
+/// the others are added where the wall has them.
+template <class FromPlane>
+void add_from_plane(const SurfaceMesh& filling, std::vector<int> ids,
+                    const FromPlane& from_plane, SurfaceMesh& mesh) {
+  for (std::size_t v = ids.size(); v < filling.points.size(); ++v) {
+    ids.push_back(static_cast<int>(mesh.points.size()));
+    mesh.points.push_back(from_plane(filling.points[v]));
+  }
+  for (const Triangle& t : filling.facets) {
+    mesh.facets.push_back({ids[t[0]], ids[t[1]], ids[t[2]]});
+  }
+}
+
 /// The band between the two loops around a cylinder, filled along itself.
 SurfaceMesh fill_strip(const films::BentWall& wall,
                        const std::vector<Points>& loops,
@@ -226,14 +240,9 @@ SurfaceMesh fill_strip(const films::BentWall& wall,
     result.points.push_back(plane.from_plane(q));
   }
   const SurfaceMesh flat = fill_disk(strip.rim, strip.holes, edge);
-  std::vector<int> ids = strip.ids;
-  for (std::size_t v = ids.size(); v < flat.points.size(); ++v) {
-    ids.push_back(static_cast<int>(result.points.size()));
-    result.points.push_back(plane.from_plane(flat.points[v]));
-  }
-  for (const Triangle& t : flat.facets) {
-    result.facets.push_back({ids[t[0]], ids[t[1]], ids[t[2]]});
-  }
+  add_from_plane(
+      flat, strip.ids, [&](const Vec3& q) { return plane.from_plane(q); },
+      result);
   return result;
 }
 
@@ -305,13 +314,7 @@ SurfaceMesh fill_bent_face(const films::BentWall& wall,
     if (map.has_apex) {
       put_on_apex(flat[part[0]], ids.size(), filling);
     }
-    for (std::size_t v = ids.size(); v < filling.points.size(); ++v) {
-      ids.push_back(static_cast<int>(result.points.size()));
-      result.points.push_back(map.from_plane(filling.points[v]));
-    }
-    for (const Triangle& t : filling.facets) {
-      result.facets.push_back({ids[t[0]], ids[t[1]], ids[t[2]]});
-    }
+    add_from_plane(filling, std::move(ids), map.from_plane, result);
   }
   return result;
 }

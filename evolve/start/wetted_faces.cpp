@@ -126,7 +126,7 @@ Vec3 mean_place(const std::vector<Points>& rims) {
   return sum / static_cast<double>(count);
 }
 
-/// The bent wall of a cap, told beside its rims.
+/// The bent wall of a cap, its origin beside its rims.
 std::optional<films::BentWall> wall_beside(const films::CapSpec& cap,
                                            const std::vector<Points>& rims) {
   std::optional<films::BentWall> result = cap.wall->bent();

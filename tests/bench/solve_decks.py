@@ -3,14 +3,14 @@
 two holes: three static steps, whole programs on one thread from the deck to their
 files (ours .vtu, .frd and .json, theirs .dat and .frd). Use: solve_decks.py
 PROGRAM, from anywhere."""
+import json
 import os
 import pathlib
+import re
 import resource
 import subprocess
 import sys
 import tempfile
-import json
-import re
 
 EDGES = [2.0, 1.3, 0.9]  # mm
 MOST_RATIO = 0.5         # of processor time
