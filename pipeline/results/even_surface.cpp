@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
-#include <map>
 #include <utility>
 #include <vector>
 
@@ -29,64 +27,92 @@ constexpr int kPasses = 3;
 // A point is not moved where a facet beside it would turn by more.
 constexpr double kKeptSide = 0.5;  // cosine
 
-/// Wanted edge lengths about the places where faces bend.
+struct Bend {
+  Vec3 place = Vec3::Zero();
+  double size = 0.0;  // of edges there
+};
+
+/// Wanted edge lengths about the places where faces bend: a tree of boxes, each
+/// of which knows the least size in it, so that of a hundred thousand bends
+/// only those that may matter are asked.
 class BendSizes {
  public:
-  BendSizes(double edge)
-      : edge_(edge), cell_(edge / (kGrowth * kRings)), least_(edge) {}
-
-  void add(const Vec3& place, double size) {
-    if (size < edge_) {
-      cells_[cell_of(place)].emplace_back(place, size);
-      least_ = std::min(least_, size);
-    }
+  BendSizes(std::vector<Bend> bends, double edge)
+      : edge_(edge), bends_(std::move(bends)), boxes_(bends_.size()) {
+    build(0, bends_.size());
   }
 
-  /// The least of what all bends leave here. Of a hundred thousand only those
-  /// in cells about the place are asked, ring by ring until none could matter.
+  /// The least of what all bends leave here.
   double at(const Vec3& place) const {
     double size = edge_;
-    const Cell here = cell_of(place);
-    for (int ring = 0; ring <= kRings; ++ring) {
-      if (least_ + kGrowth * (ring - 1) * cell_ > size) {
-        break;
-      }
-      for (int x = -ring; x <= ring; ++x) {
-        for (int y = -ring; y <= ring; ++y) {
-          const bool side = std::max(std::abs(x), std::abs(y)) == ring;
-          for (int z = -ring; z <= ring; z += side ? 1 : 2 * ring) {
-            ask({here[0] + x, here[1] + y, here[2] + z}, place, size);
-          }
-        }
-      }
-    }
+    ask(0, bends_.size(), place, size);
     return size;
   }
 
  private:
-  using Cell = std::array<int, 3>;
-  static constexpr int kRings = 3;  // beyond them no bend is felt
+  struct Box {
+    Eigen::AlignedBox3d places;
+    double least = 0.0;
+  };
 
-  void ask(const Cell& which, const Vec3& place, double& size) const {
-    if (const auto cell = cells_.find(which); cell != cells_.end()) {
-      for (const auto& [where, wanted] : cell->second) {
-        size = std::min(size, wanted + kGrowth * (place - where).norm());
-      }
-    }
+  /// The bends [begin, end) have theirs at their middle one.
+  static std::size_t middle(std::size_t begin, std::size_t end) {
+    return begin + (end - begin) / 2;
   }
 
-  Cell cell_of(const Vec3& place) const {
-    Cell cell{};
-    for (int k = 0; k < 3; ++k) {
-      cell[k] = static_cast<int>(std::floor(place[k] / cell_));
+  void build(std::size_t begin, std::size_t end) {
+    if (begin == end) {
+      return;
     }
-    return cell;
+    Box box{.places = {}, .least = bends_[begin].size};
+    for (std::size_t k = begin; k < end; ++k) {
+      box.places.extend(bends_[k].place);
+      box.least = std::min(box.least, bends_[k].size);
+    }
+    int axis = 0;
+    box.places.sizes().maxCoeff(&axis);
+    const std::size_t half = middle(begin, end);
+    const auto at = [&](std::size_t k) {
+      return bends_.begin() + static_cast<std::ptrdiff_t>(k);
+    };
+    std::nth_element(at(begin), at(half), at(end),
+                     [axis](const Bend& a, const Bend& b) {
+                       return a.place[axis] < b.place[axis];
+                     });
+    boxes_[half] = box;
+    build(begin, half);
+    build(half + 1, end);
+  }
+
+  /// What the bends [begin, end) leave at `place` is no less.
+  double bound(std::size_t begin, std::size_t end, const Vec3& place) const {
+    if (begin == end) {
+      return edge_;
+    }
+    const Box& box = boxes_[middle(begin, end)];
+    return box.least + kGrowth * box.places.exteriorDistance(place);
+  }
+
+  void ask(std::size_t begin, std::size_t end, const Vec3& place,
+           double& size) const {
+    if (bound(begin, end, place) >= size) {
+      return;
+    }
+    const std::size_t half = middle(begin, end);
+    const Bend& bend = bends_[half];
+    size = std::min(size, bend.size + kGrowth * (place - bend.place).norm());
+    if (bound(begin, half, place) < bound(half + 1, end, place)) {
+      ask(begin, half, place, size);
+      ask(half + 1, end, place, size);
+    } else {
+      ask(half + 1, end, place, size);
+      ask(begin, half, place, size);
+    }
   }
 
   double edge_;
-  double cell_;
-  double least_;
-  std::map<Cell, std::vector<std::pair<Vec3, double>>> cells_;
+  std::vector<Bend> bends_;
+  std::vector<Box> boxes_;
 };
 
 /// An edge between two facets.
@@ -133,7 +159,7 @@ bool is_inside_face(const SurfaceMesh& part, const Hinge& hinge) {
 BendSizes bend_sizes(const SurfaceMesh& part, const std::vector<Hinge>& hinges,
                      double edge) {
   constexpr double kFlat = 1e-3;  // [rad]
-  BendSizes sizes(edge);
+  std::vector<Bend> bends;
   for (const Hinge& hinge : hinges) {
     const double angle =
         is_inside_face(part, hinge) ? angle_between(part, hinge) : 0.0;
@@ -151,10 +177,10 @@ BendSizes bend_sizes(const SurfaceMesh& part, const std::vector<Hinge>& hinges,
     const int pieces = static_cast<int>(
         std::ceil(std::min(length / std::min(size, edge), 1000.0)));
     for (int k = 0; k <= pieces && size < edge; ++k) {
-      sizes.add(a + static_cast<double>(k) / pieces * along, size);
+      bends.push_back({a + static_cast<double>(k) / pieces * along, size});
     }
   }
-  return sizes;
+  return {std::move(bends), edge};
 }
 
 /// Lines between faces, and sharp edges inside one.

@@ -26,8 +26,8 @@ namespace {
 constexpr double kLongestEdge = 4.0 / 3.0;
 // The faces are known to a fiftieth of this part of an edge.
 constexpr double kShapeInEdges = 0.15;
-// x the run's own part: an inch or a metre for a millimetre is above it.
-constexpr double kMostLarger = 20.0;
+// x the run's own part: a centimetre for a millimetre is above it.
+constexpr double kMostLarger = 5.0;
 
 constexpr const char* kNameless = "unnamed";  // as readers call it
 
