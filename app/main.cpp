@@ -10,7 +10,7 @@
 #include "app/commands.h"
 #include "app/exit_code.h"
 #include "core/memory.h"
-#include "core/thread_waits.h"
+#include "core/process_settings.h"
 #include "pipeline/results/export_part.h"
 #include "pipeline/study/ordered_jobs.h"
 
@@ -370,7 +370,7 @@ int run_program(int argc, char** argv) {
 
 /// What escapes a command becomes a message and an exit code.
 int main(int argc, char** argv) {
-  meniscus::wait_asleep(argv);
+  meniscus::start_with_settings(argv);
   meniscus::keep_freed_memory();
   return meniscus::app::exit_code_of(meniscus::app::program_rules(),
                                      [&] { return run_program(argc, argv); });

@@ -104,9 +104,7 @@ function(meniscus_add_test name)
   if(ARG_LABELS)
     set(labels LABELS "${ARG_LABELS}")
   endif()
-  # Threads wait as in the program (core/thread_waits.h).
-  set(properties TIMEOUT ${ARG_TIMEOUT} ENVIRONMENT OMP_WAIT_POLICY=passive
-    ${labels} ${alone})
+  set(properties TIMEOUT ${ARG_TIMEOUT} ${labels} ${alone})
   if(ARG_TOGETHER)
     add_test(NAME ${name} COMMAND ${name})
     set_tests_properties(${name} PROPERTIES ${properties})

@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 
 #include "core/memory.h"
-#include "core/thread_waits.h"
+#include "core/process_settings.h"
 #include "pipeline/forward/forward_model.h"
 #include "pipeline/reader/case_reader.h"
 #include "tests/support/bench_target.h"
@@ -120,7 +120,7 @@ Cost cost_of(double edge) {
 }  // namespace meniscus
 
 int main(int argc, char** argv) {
-  meniscus::wait_asleep(argv);  // as the program does
+  meniscus::start_with_settings(argv);  // as the program does
   meniscus::keep_freed_memory();
   const meniscus::Cost cost =
       meniscus::cost_of(argc > 1 ? std::atof(argv[1]) : 2.0);

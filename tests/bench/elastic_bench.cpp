@@ -18,7 +18,7 @@
 
 #include <fmt/format.h>
 
-#include "core/thread_waits.h"
+#include "core/process_settings.h"
 #include "tests/support/bench_target.h"
 #include "tests/support/calculix.h"
 #include "tests/support/elastic_race.h"
@@ -249,6 +249,6 @@ int run(int count, char** words) {
 }  // namespace meniscus
 
 int main(int count, char** words) {
-  meniscus::wait_asleep(words);  // as the program does
+  meniscus::start_with_settings(words);  // as the program does
   return meniscus::run(count, words);
 }

@@ -15,7 +15,7 @@
 
 #include <fmt/format.h>
 
-#include "core/thread_waits.h"
+#include "core/process_settings.h"
 #include "tests/support/bench_target.h"
 #include "tests/support/evolver.h"
 #include "tests/support/film_complexes.h"
@@ -225,6 +225,6 @@ int run(int count, char** words) {
 }  // namespace meniscus
 
 int main(int count, char** words) {
-  meniscus::wait_asleep(words);  // as the program does
+  meniscus::start_with_settings(words);  // as the program does
   return meniscus::run(count, words);
 }

@@ -7,14 +7,14 @@
 #include <cstdlib>
 
 #include "core/memory.h"
-#include "core/thread_waits.h"
+#include "core/process_settings.h"
 #include "tests/support/bench_target.h"
 #include "tests/support/gradient_cost.h"
 #include "tests/support/rim_case.h"
 
 int main(int argc, char** argv) {
   using meniscus::GradientCost;
-  meniscus::wait_asleep(argv);  // as the program does
+  meniscus::start_with_settings(argv);  // as the program does
   meniscus::keep_freed_memory();
   const int points = argc > 1 ? std::atoi(argv[1]) : 200;
   const double edge = argc > 2 ? std::atof(argv[2]) : 20.0;

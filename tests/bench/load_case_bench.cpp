@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/memory.h"
-#include "core/thread_waits.h"
+#include "core/process_settings.h"
 #include "core/timer.h"
 #include "fea/elastic/elasticity.h"
 #include "fea/functionals/nodal_peak.h"
@@ -105,7 +105,7 @@ int run(int cells) {
 }  // namespace meniscus
 
 int main(int argc, char** argv) {
-  meniscus::wait_asleep(argv);  // as the program does
+  meniscus::start_with_settings(argv);  // as the program does
   meniscus::keep_freed_memory();
   return meniscus::run(argc > 1 ? std::atoi(argv[1]) : 60);
 }

@@ -7,7 +7,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "core/thread_waits.h"
+#include "core/process_settings.h"
 #include "mesh_tet/mesh_motion.h"
 #include "mesh_tet/quadratic.h"
 #include "mesh_tet/tetrahedralize.h"
@@ -147,7 +147,7 @@ int race() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  meniscus::wait_asleep(argv);  // as the program does
+  meniscus::start_with_settings(argv);  // as the program does
   const int missed = race();
   if (argc > 1 && std::strcmp(argv[1], "--race") == 0) {
     return missed;

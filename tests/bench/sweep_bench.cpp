@@ -13,7 +13,7 @@
 #include <fmt/format.h>
 
 #include "core/memory.h"
-#include "core/thread_waits.h"
+#include "core/process_settings.h"
 #include "core/timer.h"
 #include "optimize/samples/sampling.h"
 #include "pipeline/reader/case_reader.h"
@@ -104,7 +104,7 @@ Speed sweep_speed(const Setting& setting, int designs) {
 }  // namespace meniscus
 
 int main(int argc, char** argv) {
-  meniscus::wait_asleep(argv);
+  meniscus::start_with_settings(argv);
   meniscus::keep_freed_memory();
   const int designs = argc > 1 ? std::atoi(argv[1]) : 200;
   std::printf(

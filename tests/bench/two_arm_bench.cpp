@@ -10,7 +10,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "core/thread_waits.h"
+#include "core/process_settings.h"
 #include "core/timer.h"
 #include "fea/stress/stress.h"
 #include "mesh_tet/tetrahedralize.h"
@@ -130,7 +130,7 @@ int judge() {
 }  // namespace meniscus
 
 int main(int argc, char** argv) {
-  meniscus::wait_asleep(argv);  // as the program does
+  meniscus::start_with_settings(argv);  // as the program does
   benchmark::Initialize(&argc, argv);
   benchmark::RunSpecifiedBenchmarks();
   meniscus::print_table();

@@ -19,6 +19,7 @@ import mutations
 # The program would start itself anew for it, which doubles what a short command
 # takes.
 os.environ.setdefault("OMP_WAIT_POLICY", "passive")
+os.environ.setdefault("GLIBC_TUNABLES", "glibc.malloc.hugetlb=1")
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 CASES = ROOT / "cases"

@@ -200,6 +200,7 @@ curves = ["support", "left", "right"]
         wait; libgomp shows its settings each time it is loaded."""
         free = {key: value for key, value in os.environ.items()
                 if key not in ("OMP_WAIT_POLICY", "GOMP_SPINCOUNT")}
+        free["GLIBC_TUNABLES"] = ""
         for told, shown in (({}, ["300000", "0"]),
                             ({"OMP_WAIT_POLICY": "passive"}, ["0"]),
                             ({"OMP_WAIT_POLICY": "active"}, ["30000000000"]),
@@ -313,9 +314,9 @@ class Files(ProgramTest):
         choice = random.Random(17)
         for number in range(25):
             damaged = mutations.mutate(choice, step, "text")
-            # One without a solid, one with a wave of short bends, two that end
-            # OpenCASCADE's process, one with a spike of twenty times the part.
-            if not ALL and number not in (0, 1, 3, 5, 8):
+            # One without a solid, one that ends OpenCASCADE's process, one with
+            # a spike of twenty times the part.
+            if not ALL and number not in (0, 3, 8):
                 continue
             path = self.folder / f"part {number}.step"
             path.write_bytes(damaged)

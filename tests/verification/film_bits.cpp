@@ -11,7 +11,7 @@
 
 #include <fmt/core.h>
 
-#include "core/thread_waits.h"
+#include "core/process_settings.h"
 #include "evolve/settle/find_equilibrium.h"
 #include "tests/support/film_complexes.h"
 
@@ -113,7 +113,7 @@ std::string settled_text(const Work& work) {
 }  // namespace meniscus
 
 int main(int, char** words) {
-  meniscus::wait_asleep(words);  // as the program does
+  meniscus::start_with_settings(words);  // as the program does
   const std::vector<meniscus::Work> works = meniscus::works();
   std::vector<std::string> first;
   for (const meniscus::Work& work : works) {
