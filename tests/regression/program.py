@@ -14,8 +14,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = (pathlib.Path(sys.argv.pop(1)).resolve() if len(sys.argv) > 1 and
            "/" in sys.argv[1] else None)
 CASE = ROOT / "cases" / "two_arm" / "case.toml"
-# As the program sets it by starting itself anew, which loads a hundred libraries
-# a second time: half of what a short command takes.
+# As the program sets it by starting itself anew, which loads its libraries a
+# second time: half of what a short command takes.
 # hostile_test.py's test_threads_sleep_while_they_wait is about that.
 os.environ.setdefault("OMP_WAIT_POLICY", "passive")
 # About a thousand elements: the physics of the case in a second or two.
