@@ -14,7 +14,7 @@ find_package(VTK 9.1 REQUIRED COMPONENTS
   FiltersSources IOXML IOGeometry IOImage RenderingCore RenderingOpenGL2
   RenderingAnnotation RenderingFreeType InteractionStyle)
 
-# Only what reads and writes STEP; its targets bring what they stand on, but not
+# Only for the helper meniscus-step; its targets bring what they stand on, but not
 # their headers.
 find_package(OpenCASCADE REQUIRED)
 if(NOT TARGET deps::opencascade)

@@ -4,15 +4,17 @@
 
 namespace meniscus::step {
 
-namespace {
+FrameWriter question(StepQuestion kind) {
+  FrameWriter out;
+  out.put(kind);
+  return out;
+}
 
-[[noreturn]] void refuse_answer() {
+void refuse_message() {
   throw IoError(
       "the helper meniscus-step answers what makes no shape; install "
       "program and helper from one build");
 }
-
-}  // namespace
 
 void put_mesh(FrameWriter& out, const SurfaceMesh& mesh) {
   out.put_array(mesh.points);
@@ -44,7 +46,7 @@ SurfaceMesh get_mesh(FrameReader& in) {
                    }) ||
       !std::all_of(mesh.facet_label.begin(), mesh.facet_label.end(),
                    [&](int k) { return below(k, mesh.labels.size()); })) {
-    refuse_answer();
+    refuse_message();
   }
   return mesh;
 }
@@ -78,13 +80,33 @@ StepLoop get_loop(FrameReader& in) {
     const Points ends = in.get_array<Vec3>();
     piece.samples = in.get_array<Vec3>();
     if (ends.size() != 2 || piece.samples.size() != StepPiece::kIntervals + 1) {
-      refuse_answer();
+      refuse_message();
     }
     piece.leaves = ends[0];
     piece.arrives = ends[1];
     loop.pieces.push_back(std::move(piece));
   }
   return loop;
+}
+
+void put_report(FrameWriter& out, const StepReport& report) {
+  out.put(static_cast<std::int32_t>(report.shells));
+  out.put(report.volume);
+  out.put_array(Points{report.mass_center});
+  out.put(report.tolerance);
+}
+
+StepReport get_report(FrameReader& in) {
+  StepReport report;
+  report.shells = in.get<std::int32_t>();
+  report.volume = in.get<double>();
+  const Points center = in.get_array<Vec3>();
+  report.tolerance = in.get<double>();
+  if (center.size() != 1) {
+    refuse_message();
+  }
+  report.mass_center = center[0];
+  return report;
 }
 
 }  // namespace meniscus::step

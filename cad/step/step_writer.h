@@ -7,12 +7,14 @@
 #include <vector>
 
 #include "cad/solid/brep.h"
+#include "core/monitor.h"
 
 namespace meniscus::step {
 
 struct StepOptions {
-  std::string name;         // of the part
-  std::string unit = "mm";  // of the solid's lengths and the file: mm, m, in
+  std::string name;            // of the part
+  std::string unit = "mm";     // of the solid's lengths and the file: mm, m, in
+  Monitor* monitor = nullptr;  // asked every 50 ms whether to stop
 };
 
 /// What OpenCASCADE found of the solid that was written, in the solid's unit.
@@ -25,9 +27,9 @@ struct StepReport {
 
 /// Writes the closed solid; the same bits for the same input (the header's time
 /// is 1970). Throws MeshError for faces that make no valid closed solid
-/// (BRepCheck_Analyzer's first finding is in the message), InvalidInput for an
-/// unknown unit, IoError. One call at a time: OpenCASCADE's settings are the
-/// process's own.
+/// (BRepCheck_Analyzer's first finding is in the message) or that OpenCASCADE
+/// comes to no end with, InvalidInput for an unknown unit, IoError (also: no
+/// helper, cad/step/step_child.h), Interrupted, which leaves what was there.
 StepReport write_step(const std::filesystem::path& path,
                       const solid::Brep& brep, const StepOptions& options = {});
 

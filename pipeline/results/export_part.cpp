@@ -76,11 +76,12 @@ void wall_step(ExportJob& job, const fs::path& file, bool faceted) {
         "--format step-faceted, or stl, 3mf, obj");
   }
   const SettledFilm& film = job.film();
-  step::write_step(
-      file,
-      solid::faceted_solid(
-          forward::boundary_of(job.inputs(), film.model, film.state.points)),
-      {.name = job.input().title, .unit = job.input().units.length});
+  step::write_step(file,
+                   solid::faceted_solid(forward::boundary_of(
+                       job.inputs(), film.model, film.state.points)),
+                   {.name = job.input().title,
+                    .unit = job.input().units.length,
+                    .monitor = job.monitor()});
 }
 
 std::vector<step::MirrorPlane> mirrors_of(

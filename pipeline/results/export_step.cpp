@@ -324,7 +324,8 @@ void export_step(const std::filesystem::path& file,
         forward::rounded_anew(system, settled, settled.reference().points));
   };
   SurfaceMesh mesh = rounded(model);
-  const step::StepOptions names{.name = options.title, .unit = options.unit};
+  const step::StepOptions names{
+      .name = options.title, .unit = options.unit, .monitor = options.monitor};
   if (options.faceted) {
     step::write_step(file, whole_solid(solid::faceted_solid(mesh), options),
                      names);

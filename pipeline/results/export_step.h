@@ -17,13 +17,13 @@ struct StepExport {
   double edge = 0.0;        // the film is settled at this edge [length], > 0
   bool faceted = false;     // every facet a plane, for want of better
   std::vector<step::MirrorPlane> mirrors = {};  // of a part that is drawn
-  Monitor* monitor = nullptr;                   // hears what was measured
+  Monitor* monitor = nullptr;  // hears what was measured, asked for a stop
 };
 
 /// Settles the films of `system` and writes them as a closed solid: films as
 /// B-spline faces, caps as planes with their exact rims. Throws MeshError (no
 /// stable film, a film that cannot be cut into patches, no valid solid),
-/// IoError.
+/// IoError, Interrupted.
 void export_step(const std::filesystem::path& file,
                  const films::FilmSystem& system, const StepExport& options);
 

@@ -21,6 +21,14 @@ run(${CMAKE_COMMAND} -E env
   MENISCUS_TETGEN=${prefix}/${LIBEXEC}/meniscus/meniscus-tetgen
   ${WORK}/outside/outside ${CASE})
 run(${prefix}/${BIN}/meniscus check ${CASE})
+# It finds its helpers below the prefix: the mesher, and what writes STEP.
+run(${prefix}/${BIN}/meniscus run ${CASE} --out ${WORK}/run --no-pictures
+  --no-report --set resolution.fea=24 --set resolution.film=12)
+run(${prefix}/${BIN}/meniscus export ${WORK}/run --format step
+  --out ${WORK}/part.step)
+if(NOT EXISTS ${WORK}/part.step)
+  message(FATAL_ERROR "no part.step")
+endif()
 # The package finds the mesher below the prefix by itself.
 if(PYTHON)
   run(${CMAKE_COMMAND} -E env --unset=MENISCUS_TETGEN

@@ -4,8 +4,10 @@ import ctypes
 import json
 import math
 import os
+import pathlib
 import re
 import shutil
+import signal
 import subprocess
 import time
 import unittest
@@ -585,6 +587,47 @@ Save "{can}";
         self.expect(self.call("export", run, "--format", "step-faceted",
                               "--out", file), 0)
         self.assertGreater(file.read_text().count("ADVANCED_FACE"), 100)
+
+
+class Helper(program.ProgramTest):
+    """OpenCASCADE is in meniscus-step alone."""
+
+    def libraries(self, file):
+        return subprocess.run(["ldd", file], capture_output=True, text=True,
+                              check=True).stdout
+
+    def test_the_program_loads_no_opencascade(self):
+        helper = program.PROGRAM.parent / "meniscus-step"
+        self.assertIn("libTKernel", self.libraries(helper))
+        self.assertNotIn("libTK", self.libraries(program.PROGRAM))
+
+    def helper_runs(self, process):
+        """Whether meniscus-step is a child of the process."""
+        try:
+            children = " ".join(
+                path.read_text() for path in
+                pathlib.Path(f"/proc/{process}/task").glob("*/children"))
+            return any(pathlib.Path(f"/proc/{child}/comm").read_text().strip()
+                       == "meniscus-step" for child in children.split())
+        except OSError:  # a thread has ended since it was listed
+            return False
+
+    def test_a_stop_is_heard_while_a_file_is_written(self):
+        run = self.folder / "run"
+        self.expect(self.call("run", program.CASE, "--out", run, "--no-pictures",
+                              "--no-report", "--quiet", *program.COARSE), 0)
+        file = self.folder / "part.step"
+        # Thousands of planes: half a minute, if nobody stops it.
+        running = self.start("export", run, "--format", "step-faceted",
+                             "--edge", "5", "--out", file)
+        while running.poll() is None and not self.helper_runs(running.pid):
+            time.sleep(0.05)
+        running.send_signal(signal.SIGINT)
+        _, said = running.communicate(timeout=60)
+        self.assertEqual(running.returncode, 130, said)
+        self.assertIn("while a STEP file was written", said)
+        self.assertFalse(file.exists())
+        self.assert_no_half_files(self.folder)
 
 
 if __name__ == "__main__":

@@ -1,5 +1,7 @@
 #include "cad/step/step_writer.h"
 
+#include <cstdlib>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,6 +11,7 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/geometry/surface_mesh.h"
+#include "core/monitor.h"
 #include "tests/support/temp_folder.h"
 
 namespace meniscus::step_writer_test {
@@ -187,6 +190,86 @@ TEST_F(StepWriter, RefusesWhatIsNoSolid) {
   EXPECT_THROW(step::write_step(file, box({1.0, 1.0, 1.0}), {.unit = "ell"}),
                InvalidInput);
   EXPECT_FALSE(std::filesystem::exists(file));
+}
+
+/// The message of the MeshError that writing it throws.
+std::string fault_of(const solid::Brep& brep) {
+  const TempFolder folder;
+  try {
+    step::write_step(folder / "part.step", brep);
+  } catch (const MeshError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+/// As the process that finds them says them.
+TEST(StepFaults, ComeThroughTheHelperUnchanged) {
+  solid::Brep open = box({1.0, 1.0, 1.0});
+  open.faces.pop_back();
+  EXPECT_EQ(fault_of(open),
+            "the solid is not closed: edge 2 of face 'side_0' is used 1 times");
+  EXPECT_EQ(fault_of(box({1.0, 1.0, -1.0})),
+            "the part has 0 outer shells; a STEP solid has one");
+  solid::Brep moved = box({1.0, 1.0, 1.0});
+  moved.vertices[7][2] += 0.1;
+  EXPECT_EQ(fault_of(moved),
+            "the faces make no valid solid: face 1 'side_1' "
+            "(BRepCheck 7:1 7:1 7:1 7:1 7:1 7:1)");
+  solid::Brep no_plane = box({1.0, 1.0, 1.0});
+  std::get<solid::PlaneSurface>(no_plane.faces[1].surface).normal.setZero();
+  EXPECT_EQ(fault_of(no_plane),
+            "OpenCASCADE makes no solid of the faces: "
+            "Standard_ConstructionError");
+}
+
+/// Asks to stop when it is asked for the third time.
+class SoonStopped : public Monitor {
+ public:
+  bool stop_requested() const override { return ++asked_ >= 3; }
+
+ private:
+  mutable int asked_ = 0;
+};
+
+/// A helper of the test's own for write_step.
+class OtherHelper : public StepWriter {
+ protected:
+  void take(const std::string& script) {
+    const auto helper = folder_ / "helper";
+    write_file(helper, "#!/bin/sh\n" + script + "\n");
+    std::filesystem::permissions(helper, std::filesystem::perms::owner_all);
+    ::setenv("MENISCUS_STEP", helper.c_str(), 1);
+  }
+  void TearDown() override { ::unsetenv("MENISCUS_STEP"); }
+};
+
+TEST_F(OtherHelper, AStopIsHeardWhileItWrites) {
+  take("exec sleep 600");
+  const auto file = folder_ / "part.step";
+  write_file(file, "before");
+  SoonStopped monitor;
+  EXPECT_THROW(
+      step::write_step(file, box({1.0, 1.0, 1.0}), {.monitor = &monitor}),
+      Interrupted);
+  EXPECT_EQ(read_file(file), "before");
+}
+
+TEST_F(OtherHelper, OneThatEndsIsNoFaultOfAFile) {
+  take("exit 3");
+  const auto file = folder_ / "part.step";
+  try {
+    step::write_step(file, box({1.0, 1.0, 1.0}));
+    FAIL() << "written";
+  } catch (const MeshError& error) {
+    EXPECT_THAT(error.what(),
+                testing::AllOf(testing::HasSubstr("ended with exit code 3"),
+                               testing::HasSubstr("step-faceted"),
+                               testing::Not(testing::HasSubstr("damaged"))));
+  }
+  EXPECT_FALSE(std::filesystem::exists(file));
+  ::setenv("MENISCUS_STEP", "/no/such/file", 1);
+  EXPECT_THROW(step::write_step(file, box({1.0, 1.0, 1.0})), IoError);
 }
 
 }  // namespace

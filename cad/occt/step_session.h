@@ -5,7 +5,7 @@
 
 #include <Message_SequenceOfPrinters.hxx>
 
-namespace meniscus::step {
+namespace meniscus::occt {
 
 struct StepUnit {
   double millimetres = 1.0;
@@ -26,4 +26,4 @@ class StepSilence {
   Message_SequenceOfPrinters printers_;
 };
 
-}  // namespace meniscus::step
+}  // namespace meniscus::occt

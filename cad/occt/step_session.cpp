@@ -1,4 +1,4 @@
-#include "cad/step/step_session.h"
+#include "cad/occt/step_session.h"
 
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
@@ -6,7 +6,7 @@
 
 #include "core/error.h"
 
-namespace meniscus::step {
+namespace meniscus::occt {
 
 StepUnit step_unit(const std::string& unit) {
   if (unit == "mm") {
@@ -31,4 +31,4 @@ StepSilence::~StepSilence() {
   Message::DefaultMessenger()->ChangePrinters() = printers_;
 }
 
-}  // namespace meniscus::step
+}  // namespace meniscus::occt

@@ -1,4 +1,4 @@
-#include "cad/step/exact_faces.h"
+#include "cad/occt/exact_faces.h"
 
 #include <array>
 #include <cmath>
@@ -30,10 +30,10 @@
 #include <TopoDS_Wire.hxx>
 #include <fmt/format.h>
 
-#include "cad/step/step_knots.h"
+#include "cad/occt/step_knots.h"
 #include "core/error.h"
 
-namespace meniscus::step {
+namespace meniscus::occt {
 
 namespace {
 
@@ -231,4 +231,4 @@ TopoDS_Shape sewn_solid(std::vector<TopoDS_Face>& faces, double scale) {
   return solid_of(sewing->SewedShape());
 }
 
-}  // namespace meniscus::step
+}  // namespace meniscus::occt

@@ -1,4 +1,4 @@
-/// Internal to reading STEP: a file that OpenCASCADE has taken.
+/// Internal to the helper `meniscus-step`: a file that OpenCASCADE has taken.
 #pragma once
 
 #include <filesystem>
@@ -9,7 +9,7 @@
 
 #include "core/types.h"
 
-namespace meniscus::step {
+namespace meniscus::occt {
 
 /// In millimetres, whatever the file's own unit.
 struct StepFile {
@@ -30,4 +30,4 @@ struct StepFile {
 void open_step(StepFile& file, const std::filesystem::path& path,
                const std::string& unit);
 
-}  // namespace meniscus::step
+}  // namespace meniscus::occt

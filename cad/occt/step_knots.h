@@ -1,4 +1,4 @@
-/// Internal to the STEP writer: knots as OpenCASCADE has them.
+/// Internal to step_shape and exact_faces: knots as OpenCASCADE has them.
 #pragma once
 
 #include <vector>
@@ -6,7 +6,7 @@
 #include <TColStd_Array1OfInteger.hxx>
 #include <TColStd_Array1OfReal.hxx>
 
-namespace meniscus::step {
+namespace meniscus::occt {
 
 /// Each value once, with how often it stands.
 struct Knots {
@@ -16,4 +16,4 @@ struct Knots {
 
 Knots to_knots(const std::vector<double>& knots);
 
-}  // namespace meniscus::step
+}  // namespace meniscus::occt

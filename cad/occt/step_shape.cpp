@@ -1,4 +1,4 @@
-#include "cad/step/step_shape.h"
+#include "cad/occt/step_shape.h"
 
 #include <algorithm>
 
@@ -25,12 +25,12 @@
 #include <TopoDS_Wire.hxx>
 #include <fmt/format.h>
 
-#include "cad/step/exact_faces.h"
-#include "cad/step/step_knots.h"
+#include "cad/occt/exact_faces.h"
+#include "cad/occt/step_knots.h"
 #include "core/error.h"
 #include "core/math/union_find.h"
 
-namespace meniscus::step {
+namespace meniscus::occt {
 
 namespace {
 
@@ -394,4 +394,4 @@ StepShape step_shape(const solid::Brep& brep, double scale) {
   return ShapeBuilder(brep, scale).build();
 }
 
-}  // namespace meniscus::step
+}  // namespace meniscus::occt

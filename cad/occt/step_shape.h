@@ -1,4 +1,4 @@
-/// Internal to the STEP writer: a Brep as OpenCASCADE's shape.
+/// Internal to step_text: a Brep as OpenCASCADE's shape.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 #include "cad/solid/brep.h"
 
-namespace meniscus::step {
+namespace meniscus::occt {
 
 struct StepShape {
   TopoDS_Shape solid;
@@ -22,4 +22,4 @@ struct StepShape {
 /// closed or enclose nothing.
 StepShape step_shape(const solid::Brep& brep, double scale);
 
-}  // namespace meniscus::step
+}  // namespace meniscus::occt

@@ -1,4 +1,4 @@
-#include "cad/step/step_file.h"
+#include "cad/occt/step_file.h"
 
 #include <StepRepr_RepresentationItem.hxx>
 #include <TCollection_HAsciiString.hxx>
@@ -6,11 +6,11 @@
 #include <XSControl_WorkSession.hxx>
 #include <fmt/format.h>
 
-#include "cad/step/step_session.h"
+#include "cad/occt/step_session.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
 
-namespace meniscus::step {
+namespace meniscus::occt {
 
 std::string StepFile::name_of(const TopoDS_Shape& part) const {
   const auto item = Handle(StepRepr_RepresentationItem)::DownCast(
@@ -38,4 +38,4 @@ void open_step(StepFile& file, const std::filesystem::path& path,
   file.shape = file.reader.OneShape();
 }
 
-}  // namespace meniscus::step
+}  // namespace meniscus::occt

@@ -1,4 +1,4 @@
-/// Internal to the STEP writer: exact faces as OpenCASCADE's, and faces sewn to
+/// Internal to step_text: exact faces as OpenCASCADE's, and faces sewn to
 /// one solid.
 #pragma once
 
@@ -9,7 +9,7 @@
 
 #include "cad/solid/brep.h"
 
-namespace meniscus::step {
+namespace meniscus::occt {
 
 /// The faces of `from.faces`, which share their edges; surfaces and curves of
 /// the same kinds and numbers. Lengths are multiplied by `scale`.
@@ -21,4 +21,4 @@ std::vector<TopoDS_Face> exact_faces(const solid::ExactFaces& from,
 /// edges stay free; `scale` is for the place that it names.
 TopoDS_Shape sewn_solid(std::vector<TopoDS_Face>& faces, double scale);
 
-}  // namespace meniscus::step
+}  // namespace meniscus::occt

@@ -1,6 +1,7 @@
-// meniscus-step: reads STEP for the program, which starts it under limits of
-// time and memory: OpenCASCADE may end its process on a damaged file. Questions
-// on stdin, answers on stdout (cad/step/step_messages.h).
+// meniscus-step: reads and writes STEP for the program, which links no
+// OpenCASCADE itself and starts this to read under limits of time and memory:
+// OpenCASCADE may end its process on a damaged file. Questions on stdin,
+// answers on stdout (cad/step/step_messages.h).
 #include <fcntl.h>
 #include <new>
 #include <optional>
@@ -9,13 +10,20 @@
 #include <Standard_Failure.hxx>
 #include <fmt/format.h>
 
-#include "cad/step/step_here.h"
+#include "cad/occt/open_step_edges.h"
+#include "cad/occt/solid_of_step.h"
+#include "cad/occt/step_text.h"
+#include "cad/occt/tessellate_step.h"
+#include "cad/step/brep_message.h"
 #include "cad/step/step_messages.h"
+#include "core/error.h"
 
 namespace {
 
 using namespace meniscus;
-using namespace meniscus::step;
+using namespace meniscus::occt;
+using step::StepAnswer;
+using step::StepQuestion;
 
 /// Keeps the answers' stream for itself: OpenCASCADE may print on stdout.
 int take_stdout() {
@@ -24,7 +32,7 @@ int take_stdout() {
   return out < 0 || null < 0 || ::dup2(null, STDOUT_FILENO) < 0 ? -1 : out;
 }
 
-class Reader {
+class Answerer {
  public:
   std::string answer(const std::string& question) {
     try {
@@ -35,6 +43,8 @@ class Reader {
       return out.bytes();
     } catch (const InvalidInput& error) {
       return refusal(StepAnswer::InvalidInput, error.what());
+    } catch (const MeshError& error) {
+      return refusal(StepAnswer::MeshError, error.what());
     } catch (const std::bad_alloc&) {
       return refusal(StepAnswer::NoMemory, "");
     } catch (const std::exception& error) {
@@ -63,9 +73,9 @@ class Reader {
     switch (in.get<StepQuestion>()) {
       case StepQuestion::Part: {
         path_ = in.get_text();
-        ReadStepOptions options{.unit = in.get_text()};
+        step::ReadStepOptions options{.unit = in.get_text()};
         options.edge = in.get<double>();
-        put_mesh(out, tessellate_step(path_, options));
+        step::put_mesh(out, tessellate_step(path_, options));
         break;
       }
       case StepQuestion::Open: {
@@ -78,15 +88,24 @@ class Reader {
         for (std::string& name : names) {
           name = in.get_text();
         }
-        put_loop(out, edges_.value().loop(names));
+        step::put_loop(out, edges_.value().loop(names));
         break;
       }
       case StepQuestion::Rim:
-        put_loop(out, edges_.value().rim(in.get_text()));
+        step::put_loop(out, edges_.value().rim(in.get_text()));
         break;
       case StepQuestion::Solid: {
         path_ = in.get_text();
         out.put_text(exact_shape_text(solid_of_step(path_, in.get_text())));
+        break;
+      }
+      case StepQuestion::Write: {
+        path_ = in.get_text();
+        const step::StepOptions options{.name = in.get_text(),
+                                        .unit = in.get_text()};
+        const StepText written = step_text(path_, step::get_brep(in), options);
+        step::put_report(out, written.report);
+        out.put_text(written.text);
         break;
       }
     }
@@ -100,9 +119,9 @@ class Reader {
 
 int main() {
   const int out = take_stdout();
-  Reader reader;
+  Answerer answerer;
   while (const auto question = read_frame(STDIN_FILENO)) {
-    if (!write_frame(out, reader.answer(*question))) {
+    if (!write_frame(out, answerer.answer(*question))) {
       ::_exit(1);
     }
   }
