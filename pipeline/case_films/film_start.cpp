@@ -69,6 +69,9 @@ bool is_same_film(const settle::FilmReport& one,
 }
 
 case_data::Case frozen_at(case_data::Case input, const VectorX& design) {
+  if (design == initial_design(input)) {
+    return input;
+  }
   input.earlier_freezes.push_back(initial_design(input));
   for (std::size_t k = 0; k < input.design.size(); ++k) {
     input.design[k].initial = design[static_cast<Eigen::Index>(k)];

@@ -7,7 +7,7 @@
 namespace meniscus::case_films {
 
 /// The case with `design` for its initial one, whose film begins from that of
-/// the model before.
+/// the model before; the case itself where that is its own.
 case_data::Case frozen_at(case_data::Case input, const VectorX& design);
 
 /// Films of one design are one film, on other facets, where their areas are

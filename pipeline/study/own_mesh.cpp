@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <functional>
 #include <optional>
 
@@ -29,6 +30,10 @@ constexpr int kFewEvaluations = 40;
 constexpr double kExcess = 1.1;
 constexpr double kReturnReach = 0.3;
 
+// A minimum that misses its bounds by less on its own mesh, x the bound, is the
+// answer all the same: two meshes differ by that.
+constexpr double kSlightMiss = 0.01;
+
 OwnMesh point_on_own_mesh(const case_data::Case& input,
                           const VectorX& responses) {
   const std::vector<Constraint> constraints =
@@ -36,6 +41,19 @@ OwnMesh point_on_own_mesh(const case_data::Case& input,
   return {.first = responses[*input.study.objective],
           .second = responses[*input.study.second],
           .kept = all_kept(constraints)};
+}
+
+/// The largest miss of a bound, x the bound.
+double largest_miss(const std::vector<Constraint>& constraints) {
+  constexpr double kLeast = 1e-300;
+  double largest = 0.0;
+  for (const Constraint& c : constraints) {
+    if (!c.satisfied) {
+      largest = std::max(largest, std::abs(c.value - c.bound) /
+                                      std::max(std::abs(c.bound), kLeast));
+    }
+  }
+  return largest;
 }
 
 /// Of a study that holds margins to collapse: it misses nothing else.
@@ -146,6 +164,34 @@ bool search_again(StudyModels& models, const std::function<void()>& search) {
     search();
   }
   return false;
+}
+
+bool return_to_kept(StudyModels& models, bool proven) {
+  const std::optional<int> best = models.best_kept();
+  const StudyStage& stage = *models.stage();
+  if (!best ||
+      (proven && (models.has_dragged_answer() ||
+                  largest_miss(stage.outcome().constraints) < kSlightMiss))) {
+    return false;
+  }
+  const std::string why =
+      proven
+          ? fmt::format("is not kept on a mesh made for it: {}", stage.missed())
+          : "has no mesh of its own";
+  if (!models.go_on_at_best_kept()) {
+    return false;
+  }
+  models.stage()->judge(
+      {.status = RunStatus::Stopped,
+       .message = fmt::format(
+           "the design that the search ended at {}; of the designs that keep "
+           "every bound on meshes of their own that of evaluation {} is the "
+           "best",
+           why, *best),
+       .best = {},
+       .unproven = true},
+      models.input());
+  return true;
 }
 
 StudyOutcome without_own_mesh(StudyOutcome found) {

@@ -276,7 +276,7 @@ void StudyRun::conduct_study() {
     search_again(models_, [&] { models_.conduct(); });
     proven = judge();
   }
-  if (!proven) {
+  if (!return_to_kept(models_, proven) && !proven) {
     stage().leave(without_own_mesh(stage().outcome()));
   }
   for (std::string& point : judge_front(models_, limited_)) {

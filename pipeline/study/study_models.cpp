@@ -56,6 +56,30 @@ void StudyModels::update_time_limit() {
 void StudyModels::freeze() {
   now_.stage = std::make_unique<StudyStage>(case_, store_, options_);
   reference_ = now_.stage->start().responses;
+  note_kept();
+}
+
+/// Remembers where the stage's model is frozen, if that is the best so far.
+void StudyModels::note_kept() {
+  if (input_.study.kind != case_data::StudyKind::Minimize ||
+      now_.stage->failure()) {
+    return;
+  }
+  const forward::Evaluation& start = now_.stage->start();
+  const double objective = start.responses[*input_.study.objective];
+  const auto record = store_.find(now_.stage->model_name(), start.design);
+  if (!record || (kept_ && objective >= kept_->objective) ||
+      !all_kept(bound_constraints(input_, start.responses))) {
+    return;
+  }
+  kept_ = {.frozen = now_.frozen ? *now_.frozen : case_,
+           .at = {.evaluation = record->number,
+                  .design = start.design,
+                  .reason = "the best design that keeps every bound on a mesh "
+                            "of its own",
+                  .shift = {},
+                  .responses = start.responses},
+           .objective = objective};
 }
 
 /// Its totals are all that stays of it.
@@ -116,14 +140,15 @@ bool StudyModels::refreeze() {
   }
   std::optional<store::Refreeze> wanted =
       now_.stage->wanted(outcome.best, outcome.status == RunStatus::Converged);
-  return wanted && go_on_at(*std::move(wanted));
+  return wanted && go_on_at(*std::move(wanted), working());
 }
 
-bool StudyModels::go_on_at(store::Refreeze wanted) {
+bool StudyModels::go_on_at(store::Refreeze wanted,
+                           const case_data::Case& from) {
   log(fmt::format("a new model is frozen at evaluation {}: {}",
                   wanted.evaluation, wanted.reason));
   auto input = std::make_unique<case_data::Case>(
-      case_films::frozen_at(working(), wanted.design));
+      case_films::frozen_at(from, wanted.design));
   input->study.max_evaluations = std::max(1, evaluations_left());
   input->study.earlier_evaluations =
       input_.study.max_evaluations - input->study.max_evaluations;
@@ -144,6 +169,7 @@ bool StudyModels::go_on_at(store::Refreeze wanted) {
   }
   options_.start = wanted.go_on_from;
   refrozen_.push_back(std::move(wanted));
+  note_kept();
   return true;
 }
 
@@ -170,7 +196,14 @@ bool StudyModels::go_on_at_answer() {
                    .design = now_.stage->outcome().best,
                    .reason = "the answer on a mesh of its own",
                    .shift = {},
-                   .responses = record.responses});
+                   .responses = record.responses},
+                  working());
+}
+
+bool StudyModels::go_on_at_best_kept() {
+  // A copy: what it is kept as may change on the way.
+  const std::optional<KeptStart> kept = kept_;
+  return kept && go_on_at(kept->at, kept->frozen);
 }
 
 std::optional<forward::Evaluation> StudyModels::look_at(

@@ -38,6 +38,8 @@ class StudyModels {
   /// Goes on with a model frozen at the stage's answer; false where there is
   /// none.
   bool go_on_at_answer();
+  /// Goes on with the model of best_kept() again; false where there is none.
+  bool go_on_at_best_kept();
   /// The stage changes places with the one before it, of a study that holds
   /// margins; its next search starts from `design`.
   void go_back(const VectorX& design);
@@ -73,6 +75,11 @@ class StudyModels {
   /// The stage seeks designs, and its model is frozen at another than its
   /// answer.
   bool has_dragged_answer() const;
+  /// Of a minimum's models the one whose own design keeps every bound of the
+  /// case with the least objective; its number in the database.
+  std::optional<int> best_kept() const {
+    return kept_ ? std::optional(kept_->at.evaluation) : std::nullopt;
+  }
   /// Its answer in the database.
   store::EvaluationRecord answer() const;
 
@@ -86,7 +93,9 @@ class StudyModels {
   double elapsed_seconds() const { return timer_.seconds(); }
 
  private:
-  bool go_on_at(store::Refreeze wanted);
+  /// `from`: the case that its model is frozen of, but for the design.
+  bool go_on_at(store::Refreeze wanted, const case_data::Case& from);
+  void note_kept();
   std::unique_ptr<StudyStage> stage_at(const store::Refreeze& refreeze,
                                        const std::string& name,
                                        const case_data::Case& input);
@@ -94,6 +103,11 @@ class StudyModels {
   struct Model {
     std::unique_ptr<case_data::Case> frozen;
     std::unique_ptr<StudyStage> stage;
+  };
+  struct KeptStart {
+    case_data::Case frozen;  // what its model is frozen of
+    store::Refreeze at;
+    double objective = 0.0;
   };
   void end(Model model);
   void update_time_limit();
@@ -108,6 +122,7 @@ class StudyModels {
   double limit_;          // [s], 0: none
   Timer timer_;
   Model now_;
+  std::optional<KeptStart> kept_;
   Model before_;       // where a study may go back to it
   VectorX reference_;  // responses of the initial design
   forward::StageSeconds earlier_seconds_;

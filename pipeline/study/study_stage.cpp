@@ -140,6 +140,24 @@ void StudyStage::leave(StudyOutcome outcome) {
   outcome_ = std::move(outcome);
 }
 
+std::string StudyStage::missed() const {
+  const bool bound = input_.study.kind != case_data::StudyKind::Match;
+  std::string missed;
+  for (std::size_t k = 0; k < outcome_.constraints.size(); ++k) {
+    const Constraint& c = outcome_.constraints[k];
+    const ShownUnit unit =
+        bound ? case_data::shown_unit(input_,
+                                      input_.study.constraints[k].response)
+              : ShownUnit{};
+    if (!c.satisfied) {
+      missed += fmt::format("{}'{}' is {} and its bound {}",
+                            missed.empty() ? "" : ", ", c.name,
+                            unit.text(c.value), unit.text(c.bound));
+    }
+  }
+  return missed;
+}
+
 void StudyStage::judge(const StudyOutcome& found,
                        const case_data::Case& asked) {
   outcome_ = found;
@@ -148,20 +166,6 @@ void StudyStage::judge(const StudyOutcome& found,
       input_.study.kind == case_data::StudyKind::Match
           ? match_constraints(input_, targets(), start_.responses)
           : bound_constraints(asked, start_.responses);
-  std::string missed;
-  for (std::size_t k = 0; k < outcome_.constraints.size(); ++k) {
-    const Constraint& c = outcome_.constraints[k];
-    const bool bound = input_.study.kind != case_data::StudyKind::Match;
-    const ShownUnit unit =
-        bound
-            ? case_data::shown_unit(input_, asked.study.constraints[k].response)
-            : ShownUnit{};
-    if (!c.satisfied) {
-      missed += fmt::format("{}'{}' is {} and its bound {}",
-                            missed.empty() ? "" : ", ", c.name,
-                            unit.text(c.value), unit.text(c.bound));
-    }
-  }
   if (input_.study.kind == case_data::StudyKind::Match) {
     if (targets() != nullptr) {
       outcome_.objective =
@@ -176,9 +180,9 @@ void StudyStage::judge(const StudyOutcome& found,
                     input_.responses[*input_.study.objective].name,
                     shown.text(outcome_.objective));
   }
-  if (!missed.empty()) {
+  if (const std::string misses = missed(); !misses.empty()) {
     outcome_.message += fmt::format(
-        ". On a mesh made for this design it is not kept: {}", missed);
+        ". On a mesh made for this design it is not kept: {}", misses);
     if (outcome_.status == RunStatus::Converged) {
       outcome_.status = RunStatus::Infeasible;
     }

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "tests/support/case_text.h"
@@ -65,6 +66,59 @@ TEST(OwnMesh, ASearchThatLeavesItsReachGoesOnOnNewModels) {
     own = own || of_answer;
   }
   EXPECT_FALSE(others.empty());
+}
+
+/// Searches for a centre of mass that may be beyond the case's bound of -20,
+/// and returns to what is kept.
+struct Returned {
+  bool returned = false;
+  study::StudyOutcome outcome;
+  VectorX responses;
+  VectorX of_the_start;
+  std::string answering;
+};
+
+Returned return_from(double sought) {
+  const case_data::Case input = leaning_strut(-20.0);
+  const TempFolder folder;
+  store::StudyStore store = store::StudyStore::start(folder.path().string(),
+                                                     {.case_hash = input.hash});
+  study::StudyModels models(input, store, {});
+  const study::DeadlineMonitor unlimited(silent_monitor(), 0.0);
+  models.freeze();
+  Returned result;
+  result.of_the_start = models.stage()->start().responses;
+  models.working().study.constraints[0].lower = sought;
+  models.stage()->conduct();
+  const bool proven = study::judge_answer(models, unlimited, [] {});
+  // By the bound of the case, not by that of the search.
+  models.stage()->judge(models.stage()->outcome(), input);
+  result.returned = study::return_to_kept(models, proven);
+  result.outcome = models.stage()->outcome();
+  result.responses = models.stage()->start().responses;
+  result.answering = store::answering_model(store.all());
+  return result;
+}
+
+// A search that misses the bound leaves the start, which keeps it: its own
+// model again, to the bit.
+TEST(OwnMesh, AMinimumThatIsNotKeptGivesWayToTheBestThatIs) {
+  const Returned at = return_from(-26.0);
+  ASSERT_TRUE(at.returned) << at.outcome.message;
+  EXPECT_EQ(at.outcome.status, study::RunStatus::Stopped);
+  EXPECT_TRUE(all_kept(at.outcome.constraints));
+  EXPECT_THAT(at.outcome.message, testing::HasSubstr("'centre' is -"));
+  EXPECT_THAT(at.outcome.message,
+              testing::HasSubstr("that of evaluation 1 is the best"));
+  EXPECT_EQ(at.outcome.best[1], 0.0);
+  EXPECT_EQ(at.responses, at.of_the_start);
+  EXPECT_EQ(at.answering, store::refrozen_model(1));
+}
+
+TEST(OwnMesh, AMinimumThatIsKeptButForTheMeshesNoiseStays) {
+  const Returned at = return_from(-20.1);
+  EXPECT_FALSE(at.returned) << at.outcome.message;
+  EXPECT_NEAR(at.responses[1], -20.1, 0.1);
 }
 
 }  // namespace
