@@ -1,7 +1,10 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <queue>
+#include <set>
 #include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -121,8 +124,24 @@ void SurfaceEditor::split(int a, int b, const films::PlacedVertex& made) {
   }
 }
 
+std::optional<std::pair<int, int>> SurfaceEditor::longer_side(
+    int a, int b, const Vec3& made) const {
+  const auto length = [&](int v, int w) {
+    return (mesh_.points[v] - mesh_.points[w]).norm();
+  };
+  const double halved = length(a, b);
+  for (const Wing& wing : wings_) {
+    if ((mesh_.points[wing.corner] - made).norm() >= halved) {
+      const int far = length(a, wing.corner) < length(b, wing.corner) ? b : a;
+      return std::minmax(far, wing.corner);
+    }
+  }
+  return std::nullopt;
+}
+
 void SurfaceEditor::split_above(double factor, const EdgeTarget& target) {
   std::priority_queue<QueuedEdge> queue;
+  std::set<std::pair<int, int>> longer;  // sides asked for beside their turn
   const auto push = [&](int a, int b) {
     const double r = ratio(a, b, target);
     if (r > factor) {
@@ -135,11 +154,12 @@ void SurfaceEditor::split_above(double factor, const EdgeTarget& target) {
   while (!queue.empty()) {
     heed_stop("film");
     if (static_cast<double>(mesh_.facets.size()) > most) {
+      const Vec3& near = mesh_.points[std::get<1>(queue.top())];
       throw InvalidInput(fmt::format(
           "the film takes more than {:.2g} facets at edges of {:.4g} and still "
-          "more; films that lie on each other do that, or a number of an edge "
-          "or a curve that is wrong",
-          most, target.edge));
+          "more, here near ({:.4g}, {:.4g}, {:.4g}); films that lie on each "
+          "other do that, or a number of an edge or a curve that is wrong",
+          most, target.edge, near.x(), near.y(), near.z()));
     }
     const auto [r, a, b] = queue.top();
     queue.pop();
@@ -154,6 +174,20 @@ void SurfaceEditor::split_above(double factor, const EdgeTarget& target) {
                           ratio(b, wing.corner, target)});
     }
     const films::PlacedVertex made = middle(a, b, line(a, b));
+    // Of a needle whose wanted lengths differ from end to end the side with the
+    // largest ratio may not be the longest. The new edge across would be as
+    // long as the one that is halved, and so on without end: its longest side
+    // is first (Rivara, International Journal for Numerical Methods in
+    // Engineering 20, 1984), wanted or not; where that cannot be halved this
+    // edge stays as well.
+    if (const auto side = longer_side(a, b, made.place)) {
+      if (longer.insert(*side).second) {
+        queue.emplace(r, a, b);
+        queue.emplace(std::numeric_limits<double>::infinity(), side->first,
+                      side->second);
+      }
+      continue;
+    }
     const double half = kHalf * (mesh_.points[a] - mesh_.points[b]).norm();
     if (longest > (1.0 + 1e-12) * r ||
         (made.place - mesh_.points[a]).norm() > half ||

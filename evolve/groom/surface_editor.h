@@ -13,6 +13,8 @@
 #pragma once
 
 #include <functional>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "evolve/films/edge_marks.h"
@@ -84,6 +86,10 @@ class SurfaceEditor {
     int corner;
   };
 
+  /// Of the edge gathered last, a to b, halved at `made`: the longest side of a
+  /// facet in which the new edge would be no shorter than it.
+  std::optional<std::pair<int, int>> longer_side(int a, int b,
+                                                 const Vec3& made) const;
   void find_lines();
   void rank_vertices();
   Rank rank_of(int v) const;
