@@ -92,9 +92,9 @@ const std::vector<SolidRow>& solid_kinds() {
         {{"curve", "inner"}, {}},
         "band between two curves, flat where they lie in one plane"},
        {"wetted",
-        {{"curve", "at"},
-         {"wall", "normal", "axis", "radius", "half_angle", "holes",
-          "contact_angle"}},
+        {{"curve"},
+         {"wall", "at", "normal", "axis", "radius", "half_angle", "file",
+          "face", "holes", "contact_angle"}},
         "the face that a body wets on a wall: the film that begins at its "
         "curve ends there and slides"},
        {"sides",
@@ -294,10 +294,11 @@ void read_rims(CaseContext& context, const CaseTable& table,
   }
 }
 
-/// A kind of wall and the keys that say where it is.
+/// A kind of wall and the keys that say where it is; without `kind` the face
+/// says it.
 struct WallRow {
   const char* name;
-  films::WallKind kind;
+  std::optional<films::WallKind> kind;
   std::vector<const char*> keys;
   std::string_view doc;
 };
@@ -306,24 +307,29 @@ const std::vector<WallRow>& wall_kinds() {
   static const std::vector<WallRow> kinds = {
       {"plane",
        films::WallKind::Plane,
-       {"normal"},
+       {"at", "normal"},
        "across normal, through at"},
       {"cylinder",
        films::WallKind::Cylinder,
-       {"axis", "radius"},
+       {"at", "axis", "radius"},
        "about axis, through at"},
-      {"sphere", films::WallKind::Sphere, {"radius"}, "about at"},
+      {"sphere", films::WallKind::Sphere, {"at", "radius"}, "about at"},
       {"cone",
        films::WallKind::Cone,
-       {"axis", "half_angle"},
-       "its apex at, opening along axis"}};
+       {"at", "axis", "half_angle"},
+       "its apex at, opening along axis"},
+      {"step",
+       std::nullopt,
+       {"file", "face"},
+       "a face of a STEP file, which is one of these"}};
   return kinds;
 }
 
 /// Says which of the keys of walls this one has to have, and has not to.
 void check_wall_keys(CaseContext& context, const CaseTable& table,
                      const WallRow& row) {
-  for (const char* key : {"normal", "axis", "radius", "half_angle"}) {
+  for (const char* key :
+       {"at", "normal", "axis", "radius", "half_angle", "file", "face"}) {
     const bool wanted =
         std::find_if(row.keys.begin(), row.keys.end(), [&](const char* k) {
           return std::string_view(k) == key;
@@ -334,36 +340,68 @@ void check_wall_keys(CaseContext& context, const CaseTable& table,
           wanted ? fmt::format("{} has no '{}'; its wall is a {}, which needs "
                                "{}",
                                table.path(), key, row.name,
-                               fmt::join(row.keys, " and "))
+                               fmt::join(row.keys, ", "))
                  : fmt::format("{}.{} is of other walls than a {}, which has "
                                "{}; leave it out",
                                table.path(), key, row.name,
-                               fmt::join(row.keys, " and ")));
+                               fmt::join(row.keys, ", ")));
     }
   }
 }
 
+/// The wall that a face of a STEP file lies on.
+case_data::WettedWall wall_of_face(CaseContext& context, const CaseTable& table,
+                                   case_data::Case& result) {
+  case_data::WettedWall wall;
+  const auto number = [&](double value) {
+    return case_data::Quantity{.expression = Expression(value),
+                               .line = table.line("face"),
+                               .key = table.path() + ".face"};
+  };
+  const auto vector = [&](const Vec3& v) {
+    return case_data::QuantityVector{number(v.x()), number(v.y()),
+                                     number(v.z())};
+  };
+  const std::optional<WallFace> face = read_wall_face(context, table, result);
+  wall.kind = face ? face->kind : films::WallKind::Plane;
+  wall.at = vector(face ? face->at : Vec3::Zero());
+  wall.normal = vector(face ? face->normal : Vec3::UnitZ());
+  if (wall.kind == films::WallKind::Cylinder ||
+      wall.kind == films::WallKind::Sphere) {
+    wall.radius = number(face->radius);
+  }
+  if (wall.kind == films::WallKind::Cone) {
+    wall.half_angle = number(face->half_angle);
+  }
+  return wall;
+}
+
 /// Where films slide on a wall, which belongs to the frozen model.
-case_data::WettedWall read_wetted(CaseContext& context,
-                                  const CaseTable& table) {
+case_data::WettedWall read_wetted(CaseContext& context, const CaseTable& table,
+                                  case_data::Case& result) {
   const std::optional<std::string> kind = table.choice("wall");
   const WallRow& row =
       case_data::row_named(wall_kinds(), kind.value_or("plane"));
   if (kind || !table.has("wall")) {
     check_wall_keys(context, table, row);
   }
-  const char* along = row.kind == films::WallKind::Plane ? "normal" : "axis";
-  case_data::WettedWall wall{
-      .kind = row.kind,
-      .at = table.vector_or_zero("at"),
-      .normal = table.vector_or_zero(along),
-      .radius = table.quantity("radius"),
-      .half_angle = table.quantity("half_angle"),
-      .contact_angle = table.quantity("contact_angle")
+  case_data::WettedWall wall;
+  if (row.kind) {
+    const bool plane = row.kind == films::WallKind::Plane;
+    wall = {.kind = *row.kind,
+            .at = table.vector_or_zero("at"),
+            .normal = table.vector_or_zero(plane ? "normal" : "axis"),
+            .radius = table.quantity("radius"),
+            .half_angle = table.quantity("half_angle"),
+            .contact_angle = {}};
+  } else {
+    wall = wall_of_face(context, table, result);
+  }
+  wall.contact_angle = table.quantity("contact_angle")
                            .value_or(case_data::Quantity{
                                .expression = Expression(kRightAngle),
                                .line = table.line(),
-                               .key = table.path() + ".contact_angle"})};
+                               .key = table.path() + ".contact_angle"});
   for (const case_data::QuantityVector& vector : {wall.at, wall.normal}) {
     for (const case_data::Quantity& quantity : vector) {
       require_frozen(context, quantity, "a wall's place");
@@ -399,7 +437,7 @@ case_data::CapEntry read_solid(CaseContext& context, const CaseTable& table,
   } else {
     read_rims(context, table, known, cap.spec);
     if (*kind == "wetted") {
-      cap.wetted = read_wetted(context, table);
+      cap.wetted = read_wetted(context, table, result);
     }
   }
   return cap;
@@ -464,7 +502,12 @@ TableSpec solid_table() {
         "of sides: two polygons of as many corners; of file: those that its "
         "rims lie on; of flange: those in its top face that films grow from"},
        {"file", K::Text, D::None, false,
-        "of file: as of films; of step: .step or .stp"},
+        "of file: as of films; of step, and of wetted with that wall: .step or "
+        ".stp"},
+       {"face", K::Text, D::None, false,
+        "of wetted on a face of a STEP file: its name there, or face_1, "
+        "face_2, "
+        "..., a plane, cylinder, sphere or cone"},
        {"surface", K::Name, D::None, false, "of file: as of films"},
        {"scale", K::Constant, D::None, false, "of file: as of films"},
        {"within", K::Constant, D::Length, false, "of file: as of films"},

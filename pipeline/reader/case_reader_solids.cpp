@@ -1,5 +1,6 @@
 /// Solids of kind "step": from the file to faces, rims and their curves.
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -234,7 +235,8 @@ std::string face_text(const ExactShape& shape, const ExactFace& face) {
 }
 
 void refuse_face(CaseContext& context, const CaseTable& table,
-                 const ExactShape& shape, const std::string& face) {
+                 const ExactShape& shape, const char* key,
+                 const std::string& face) {
   constexpr std::size_t kNamesShown = 24;
   std::vector<std::string> known;
   for (const ExactFace& other : shape.faces) {
@@ -245,10 +247,10 @@ void refuse_face(CaseContext& context, const CaseTable& table,
     known.push_back(face_text(shape, other));
   }
   context.problems.add(
-      table.line("open"),
-      fmt::format("{}.open: there is no face '{}'; its {} faces, by name or "
+      table.line(key),
+      fmt::format("{}.{}: there is no face '{}'; its {} faces, by name or "
                   "number: {}",
-                  table.path(), face, shape.faces.size(),
+                  table.path(), key, face, shape.faces.size(),
                   fmt::join(known, "; ")));
 }
 
@@ -259,7 +261,7 @@ void read_open(CaseContext& context, const CaseTable& table,
   for (const std::string& name : table.names_or_numbers("open")) {
     const int face = index_named(faces, name);
     if (face < 0) {
-      refuse_face(context, table, *solid.spec.shape, name);
+      refuse_face(context, table, *solid.spec.shape, "open", name);
     }
     open.insert(face);
   }
@@ -304,6 +306,53 @@ void read_step_solids(CaseContext& context,
     read_open(context, table, solid);
     result.step_solids.push_back(std::move(solid));
   }
+}
+
+std::optional<WallFace> read_wall_face(CaseContext& context,
+                                       const CaseTable& table,
+                                       case_data::Case& result) {
+  const auto path = table.text("file");
+  const auto name = table.text("face");
+  const std::string* text =
+      path && name ? solid_text(context, table, *path, result) : nullptr;
+  if (text == nullptr) {
+    return std::nullopt;
+  }
+  const ExactShape shape = read_exact_shape_text(*text);
+  const int found = index_named(shape.faces, *name);
+  if (found < 0) {
+    refuse_face(context, table, shape, "face", *name);
+    return std::nullopt;
+  }
+  const ExactFace* face = &shape.faces[static_cast<std::size_t>(found)];
+  if (const auto* plane = std::get_if<ExactPlane>(&face->surface)) {
+    return WallFace{.at = plane->frame.origin, .normal = plane->frame.z};
+  }
+  if (const auto* round = std::get_if<ExactCylinder>(&face->surface)) {
+    return WallFace{.kind = films::WallKind::Cylinder,
+                    .at = round->frame.origin,
+                    .normal = round->frame.z,
+                    .radius = round->radius};
+  }
+  if (const auto* ball = std::get_if<ExactSphere>(&face->surface)) {
+    return WallFace{.kind = films::WallKind::Sphere,
+                    .at = ball->frame.origin,
+                    .radius = ball->radius};
+  }
+  if (const auto* cone = std::get_if<ExactCone>(&face->surface)) {
+    const double rise = cone->radius / std::tan(cone->angle);
+    const bool widens = cone->angle > 0.0;
+    return WallFace{.kind = films::WallKind::Cone,
+                    .at = cone->frame.origin - rise * cone->frame.z,
+                    .normal = widens ? cone->frame.z : Vec3(-cone->frame.z),
+                    .half_angle = std::abs(cone->angle)};
+  }
+  context.problems.add(
+      table.line("face"),
+      fmt::format("{}.face: films slide on planes, cylinders, spheres and "
+                  "cones, and this is {}",
+                  table.path(), face_text(shape, *face)));
+  return std::nullopt;
 }
 
 void add_step_faces(const std::string& name, case_data::Case& result) {

@@ -17,6 +17,7 @@ from step_test import gmsh_volume
 # here about a third of the radii.
 MOST_OFF = 4e-4
 SAME = 1e-9  # areas and volumes of the same faces, as OpenCASCADE sums them
+SAME_WALL = 1e-7  # of files of twelve digits
 MOST_FILM_OFF = 2e-3  # of a volume beside films of flat facets
 
 CASE = """title = "Solid"
@@ -71,6 +72,72 @@ BOSS = """Box(1) = {-20, -15, 0, 40, 30, 6};
 Cylinder(2) = {0, 0, 5, 0, 0, 6, 9};
 BooleanUnion(3) = { Volume{1}; Delete; }{ Volume{2}; Delete; };
 """
+# A drop on a wall near the origin, which it wets on the side of +z.
+DROP = """title = "Drop"
+units = "mm-N-MPa"
+
+[curves.rim]
+kind = "circle"
+center = [0, 0, {height}]
+normal = [0, 0, 1]
+radius = 6
+
+[films.dome]
+kind = "disk"
+curves = ["rim"]
+
+[solids.sole]
+kind = "wetted"
+curve = "rim"
+{wall}
+contact_angle = "80 deg"
+
+[bodies.part]
+enclosed_by = ["dome", "sole"]
+volume = 260
+material = "steel"
+
+[materials.steel]
+youngs_modulus = "210 GPa"
+poisson_ratio = 0.3
+density = "7850 kg/m3"
+
+[load_cases.pull]
+supports = [{{ on = "sole", fix = "xyz" }}]
+loads = [{{ on = "dome", pressure = 1 }}]
+
+[responses.volume]
+kind = "volume"
+
+[resolution]
+fea = 4
+
+[study]
+kind = "analyse"
+"""
+# The solid, the place of its face, its wall by numbers, height of the rim.
+WALLS = {
+    "plane": ("Box(1) = {-20, -20, -9, 40, 40, 9};", (0, 0, 0),
+              'at = [0, 0, 0]\nnormal = [0, 0, 1]', 0),
+    "cylinder": ("Cylinder(1) = {-30, 0, -20, 60, 0, 0, 20};", None,
+                 'wall = "cylinder"\nat = [0, 0, -20]\naxis = [1, 0, 0]\n'
+                 "radius = 20", 0),
+    "sphere": ("Sphere(1) = {0, 0, -20, 20};", None,
+               'wall = "sphere"\nat = [0, 0, -20]\nradius = 20', -0.9212),
+    # A funnel, which gmsh draws from its point or from its mouth.
+    "cone": ("Box(1) = {-20, -20, -12, 40, 40, 20}; "
+             "Cone(2) = {0, 0, -7.15, 0, 0, 16, 0, 13.4}; "
+             "BooleanDifference(3) = { Volume{1}; Delete; }"
+             "{ Volume{2}; Delete; };", None,
+             'wall = "cone"\nat = [0, 0, -7.15]\naxis = [0, 0, 1]\n'
+             'half_angle = "atan(13.4 / 16)"', 0),
+    "cone ": ("Box(1) = {-20, -20, -12, 40, 40, 20}; "
+              "Cone(2) = {0, 0, 8.85, 0, 0, -14.4, 13.4, 1.34}; "
+              "BooleanDifference(3) = { Volume{1}; Delete; }"
+              "{ Volume{2}; Delete; };", None,
+              'wall = "cone"\nat = [0, 0, -7.15]\naxis = [0, 0, 1]\n'
+              'half_angle = "atan(13.4 / 16)"', 0),
+}
 
 
 def faces_of(path):
@@ -284,6 +351,52 @@ direction = [0, 0.3, 1]
                  if face[0] != "BSpline surface"]
         self.expect_same(2 * [("Cylinder", 168.0 * math.pi)] +
                          2 * [("Plane", 144.0 * math.pi)], found)
+
+    def drop_on(self, wall, height):
+        case = self.folder / "drop.toml"
+        case.write_text(DROP.format(wall=wall, height=height))
+        self.expect(self.call("run", case, "--out", self.folder / "drop",
+                              "--no-pictures", "--no-report", "--no-frames",
+                              "--quiet"), 0)
+        found = self.result(self.folder / "drop")
+        return found["film"]["energy"], found["responses"]["volume"]
+
+    def test_films_slide_on_its_faces(self):
+        """As on the same walls by numbers."""
+        for kind, (script, place, numbers, height) in WALLS.items():
+            with self.subTest(kind=kind):
+                self.draw(script)
+                of_file = 'wall = "step"\nfile = "part.step"\nface = "{}"'
+                case = self.folder / "drop.toml"
+                case.write_text(DROP.format(wall=of_file.format("none"),
+                                            height=height))
+                self.said = self.call("check", case).stderr
+                self.assertRegex(self.said, "drop.toml:19: .*no face 'none'")
+                face = self.face_at(kind.strip(), *(place or ()))
+                for own, other in zip(
+                        self.drop_on(of_file.format(face), height),
+                        self.drop_on(numbers, height)):
+                    self.assertAlmostEqual(own / other, 1, delta=SAME_WALL)
+
+    def test_faces_that_no_film_slides_on(self):
+        self.make(PLATE)
+        for face, says in (("face_99", "no face 'face_99'"), ("", "no face")):
+            case = self.folder / "drop.toml"
+            case.write_text(DROP.format(
+                wall='wall = "step"\nfile = "part.step"\n'
+                     f'face = "{face}"', height=0))
+            self.expect(self.call("check", case), 2, "drop.toml:19: ", says)
+        self.said = self.call("check", case).stderr
+        torus = self.face_at("torus")
+        case.write_text(case.read_text().replace('face = ""',
+                                                 f'face = "{torus}"'))
+        self.expect(self.call("check", case), 2, "drop.toml:19: ",
+                    "this is .*torus about")
+        case.write_text(case.read_text().replace('wall = "step"',
+                                                 'wall = "cylinder"'))
+        self.expect(self.call("check", case), 2,
+                    "file is of other walls than a cylinder",
+                    "has no 'at'; its wall is a cylinder, which needs at")
 
     def refuse(self, case, pattern, *says):
         line = self.line_of(case, pattern)

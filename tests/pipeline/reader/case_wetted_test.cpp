@@ -128,12 +128,17 @@ TEST(CaseWetted, MistakesOfBentWallsAreToldWithTheirLines) {
   expect_problem(on_wall("wall = \"ball\"\nradius = 50"), "case.toml:32: ");
   expect_problem(on_wall("wall = \"sphere\""),
                  "solids.foot_pad has no 'radius'; its wall is a sphere, which "
-                 "needs radius");
+                 "needs at, radius");
   expect_problem(on_wall("wall = \"sphere\"\nradius = 50\naxis = [0, 0, 1]"),
                  "case.toml:34: solids.foot_pad.axis is of other walls than a "
-                 "sphere, which has radius; leave it out");
+                 "sphere, which has at, radius; leave it out");
+  expect_problem(changed(on_wall("wall = \"sphere\"\nradius = 50"),
+                         "at = [0, 0, 0]\n", ""),
+                 "solids.foot_pad has no 'at'; its wall is a sphere");
+  expect_problem(on_wall("wall = \"step\"\nface = \"top\""),
+                 "has no 'file'; its wall is a step, which needs file, face");
   expect_problem(on_wall("wall = \"cone\"\naxis = [0, 0, 1]"),
-                 "its wall is a cone, which needs axis and half_angle");
+                 "its wall is a cone, which needs at, axis, half_angle");
   expect_problem(
       on_wall("wall = \"cone\"\naxis = [0, 0, 0]\nhalf_angle = \"45 deg\""),
       "case.toml:33: solids.foot_pad.axis is 0; expected a direction along the "
