@@ -38,7 +38,7 @@ constexpr double kMemoryPerByte = 500.0;
                                  const ChildResult& end) {
   throw MeshError(fmt::format(
       "{}: OpenCASCADE makes no STEP file of the solid (its process was {}); "
-      "export it as step-faceted, or settle it with another --edge",
+      "export it with another --edge, or in another format",
       path.string(), describe_end(end)));
 }
 

@@ -1,7 +1,7 @@
 /// Internal: OpenCASCADE in a process of its own, the helper `meniscus-step`.
 /// On a damaged file it may end its process, run without end or take all
 /// memory; here that is an error of the file. Limits of reading grow with the
-/// file: 10 s for each question and 1.2 GB, and 20 s and 0.5 GB more for each
+/// file: 10 s for each question and 0.9 GB, and 20 s and 0.5 GB more for each
 /// MB of it. Writing has none: the solid is the program's own.
 #pragma once
 

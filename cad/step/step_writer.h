@@ -27,8 +27,8 @@ struct StepReport {
 
 /// Writes the closed solid; the same bits for the same input (the header's time
 /// is 1970). Throws MeshError for faces that make no valid closed solid
-/// (BRepCheck_Analyzer's first finding is in the message) or that OpenCASCADE
-/// comes to no end with, InvalidInput for an unknown unit, IoError (also: no
+/// (BRepCheck_Analyzer's first finding is in the message) or that end
+/// OpenCASCADE's process, InvalidInput for an unknown unit, IoError (also: no
 /// helper, cad/step/step_child.h), Interrupted, which leaves what was there.
 StepReport write_step(const std::filesystem::path& path,
                       const solid::Brep& brep, const StepOptions& options = {});

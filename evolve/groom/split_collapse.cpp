@@ -141,7 +141,9 @@ std::optional<std::pair<int, int>> SurfaceEditor::longer_side(
 
 void SurfaceEditor::split_above(double factor, const EdgeTarget& target) {
   std::priority_queue<QueuedEdge> queue;
-  std::set<std::pair<int, int>> longer;  // sides asked for beside their turn
+  // Sides that come before their turn, the last one first, and all that did.
+  std::vector<QueuedEdge> before;
+  std::set<std::pair<int, int>> longer;
   const auto push = [&](int a, int b) {
     const double r = ratio(a, b, target);
     if (r > factor) {
@@ -151,18 +153,26 @@ void SurfaceEditor::split_above(double factor, const EdgeTarget& target) {
   for_each_edge(push);
   const double most =
       static_cast<double>(mesh_.facets.size()) + most_facets(target);
-  while (!queue.empty()) {
+  const auto take_next = [&] {
+    const QueuedEdge next = before.empty() ? queue.top() : before.back();
+    if (before.empty()) {
+      queue.pop();
+    } else {
+      before.pop_back();
+    }
+    return next;
+  };
+  while (!queue.empty() || !before.empty()) {
     heed_stop("film");
+    const auto [r, a, b] = take_next();
     if (static_cast<double>(mesh_.facets.size()) > most) {
-      const Vec3& near = mesh_.points[std::get<1>(queue.top())];
+      const Vec3& near = mesh_.points[a];
       throw InvalidInput(fmt::format(
           "the film takes more than {:.2g} facets at edges of {:.4g} and still "
           "more, here near ({:.4g}, {:.4g}, {:.4g}); films that lie on each "
           "other do that, or a number of an edge or a curve that is wrong",
           most, target.edge, near.x(), near.y(), near.z()));
     }
-    const auto [r, a, b] = queue.top();
-    queue.pop();
     if (!gather(a, b)) {
       continue;
     }
@@ -182,9 +192,9 @@ void SurfaceEditor::split_above(double factor, const EdgeTarget& target) {
     // edge stays as well.
     if (const auto side = longer_side(a, b, made.place)) {
       if (longer.insert(*side).second) {
-        queue.emplace(r, a, b);
-        queue.emplace(std::numeric_limits<double>::infinity(), side->first,
-                      side->second);
+        before.emplace_back(r, a, b);
+        before.emplace_back(std::numeric_limits<double>::infinity(),
+                            side->first, side->second);
       }
       continue;
     }

@@ -335,16 +335,17 @@ void check_wall_keys(CaseContext& context, const CaseTable& table,
           return std::string_view(k) == key;
         }) != row.keys.end();
     if (wanted != table.has(key)) {
+      const std::string wall =
+          row.kind ? fmt::format("a {}", row.name) : "the face of a STEP file";
       context.problems.add(
           wanted ? table.line() : table.line(key),
-          wanted ? fmt::format("{} has no '{}'; its wall is a {}, which needs "
-                               "{}",
-                               table.path(), key, row.name,
-                               fmt::join(row.keys, ", "))
-                 : fmt::format("{}.{} is of other walls than a {}, which has "
-                               "{}; leave it out",
-                               table.path(), key, row.name,
-                               fmt::join(row.keys, ", ")));
+          wanted
+              ? fmt::format("{} has no '{}'; its wall is {}, which needs {}",
+                            table.path(), key, wall, fmt::join(row.keys, ", "))
+              : fmt::format("{}.{} is of other walls than {}, which has {}; "
+                            "leave it out",
+                            table.path(), key, wall,
+                            fmt::join(row.keys, ", ")));
     }
   }
 }

@@ -318,7 +318,13 @@ std::optional<WallFace> read_wall_face(CaseContext& context,
   if (text == nullptr) {
     return std::nullopt;
   }
-  const ExactShape shape = read_exact_shape_text(*text);
+  ExactShape shape;
+  try {
+    shape = read_exact_shape_text(*text);
+  } catch (const InvalidInput& error) {
+    context.problems.add(table.line("file"), error.what());
+    return std::nullopt;
+  }
   const int found = index_named(shape.faces, *name);
   if (found < 0) {
     refuse_face(context, table, shape, "face", *name);

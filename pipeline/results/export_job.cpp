@@ -36,10 +36,11 @@ ExportJob::ExportJob(const std::filesystem::path& folder, Options options)
     : options_(std::move(options)) {
   const store::StudyStore store = store::StudyStore::read(folder.string());
   const std::vector<store::EvaluationRecord> records = store.all();
-  input_ = at_edge(
-      store::frozen_as_answered(store::restore_case(store.meta()), records),
-      options_.edge);
-  design_ = store::answer_of_run(input_, records, folder);
+  case_data::Case input = store::restore_case(store.meta());
+  design_ = store::answer_of_run(input, records, folder);
+  input_ =
+      at_edge(store::frozen_as_answered(std::move(input), records, design_),
+              options_.edge);
   inputs_ = case_data::evaluate(input_, design_);
 }
 

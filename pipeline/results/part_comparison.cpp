@@ -269,12 +269,11 @@ PartFigures part_figures(const std::string& name,
 RunPart load_run_part(const std::filesystem::path& folder, Monitor* monitor) {
   const store::StudyStore store = store::StudyStore::read(folder.string());
   const std::vector<store::EvaluationRecord> records = store.all();
-  RunPart part{.input = store::frozen_as_answered(
-                   store::restore_case(store.meta()), records),
-               .design = {},
-               .fields = {},
-               .figures = {}};
+  RunPart part;
+  part.input = store::restore_case(store.meta());
   part.design = store::answer_of_run(part.input, records, folder);
+  part.input =
+      store::frozen_as_answered(std::move(part.input), records, part.design);
   const forward::ForwardModel model(part.input, {.monitor = monitor});
   const forward::Evaluation found =
       model.failure() ? model.frozen()

@@ -137,18 +137,28 @@ int count_of_model(const std::vector<EvaluationRecord>& records,
       [&](const EvaluationRecord& r) { return r.model == model; }));
 }
 
-std::string answering_model(const std::vector<EvaluationRecord>& records) {
+std::string answering_model(const std::vector<EvaluationRecord>& records,
+                            const std::optional<VectorX>& answer) {
   // A sweep that grows adds designs to its first model after the best of the
-  // shorter one had its own: it is the last to begin that counts.
-  std::string answering = kStudyModel;
-  std::set<std::string> begun = {answering};
+  // shorter one had its own: it is the last to begin that counts. A study that
+  // goes on later may come back to a model before that.
+  std::vector<std::string> begun = {kStudyModel};
+  std::set<std::string> knowing;
   for (const EvaluationRecord& record : records) {
-    if (!record.failure && is_study_model(record.model) &&
-        begun.insert(record.model).second) {
-      answering = record.model;
+    if (record.failure || !is_study_model(record.model)) {
+      continue;
+    }
+    if (std::find(begun.begin(), begun.end(), record.model) == begun.end()) {
+      begun.push_back(record.model);
+    }
+    if (!answer || record.inputs == *answer) {
+      knowing.insert(record.model);
     }
   }
-  return answering;
+  const auto last = std::find_if(
+      begun.rbegin(), begun.rend(),
+      [&](const std::string& model) { return knowing.count(model) > 0; });
+  return last != begun.rend() ? *last : kStudyModel;
 }
 
 double design_distance(const case_data::Case& input, const VectorX& a,
@@ -164,12 +174,13 @@ double design_distance(const case_data::Case& input, const VectorX& a,
   return largest;
 }
 
-case_data::Case frozen_as_answered(
-    case_data::Case input, const std::vector<EvaluationRecord>& records) {
+case_data::Case frozen_as_answered(case_data::Case input,
+                                   const std::vector<EvaluationRecord>& records,
+                                   const VectorX& answer) {
   // Back from the last model to the first: each names the design that it is
   // frozen at, whose record names the model before.
   std::vector<VectorX> way;
-  std::string model = answering_model(records);
+  std::string model = answering_model(records, answer);
   while (model != kStudyModel) {
     const auto at = std::find_if(
         records.begin(), records.end(), [&](const EvaluationRecord& record) {

@@ -36,16 +36,19 @@ int count_of_model(const std::vector<EvaluationRecord>& records,
                    const std::string& model);
 
 /// The last of these models to begin; kStudyModel when none has evaluated a
-/// design.
-std::string answering_model(const std::vector<EvaluationRecord>& records);
+/// design. `answer`: of those that have evaluated it.
+std::string answering_model(const std::vector<EvaluationRecord>& records,
+                            const std::optional<VectorX>& answer = {});
 
 /// The largest difference of a variable, x its range.
 double design_distance(const case_data::Case& input, const VectorX& a,
                        const VectorX& b);
 
-/// The case whose freeze is the answering model, with all before it.
-case_data::Case frozen_as_answered(
-    case_data::Case input, const std::vector<EvaluationRecord>& records);
+/// The case whose freeze is the model that a run's answer is of, with all
+/// before it.
+case_data::Case frozen_as_answered(case_data::Case input,
+                                   const std::vector<EvaluationRecord>& records,
+                                   const VectorX& answer);
 
 /// What a study on one model has come to.
 struct FrozenStage {

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <functional>
 #include <optional>
 
 #include <fmt/format.h>
 
 #include "pipeline/accuracy/doubted_margins.h"
+#include "pipeline/store/incumbent.h"
 #include "pipeline/study/held_margins.h"
 
 namespace meniscus::study {
@@ -30,7 +30,7 @@ constexpr int kFewEvaluations = 40;
 constexpr double kExcess = 1.1;
 constexpr double kReturnReach = 0.3;
 
-// A minimum that misses its bounds by less on its own mesh, x the bound, is the
+// A minimum that misses its bounds by less on its own mesh (incumbent.h) is the
 // answer all the same: two meshes differ by that.
 constexpr double kSlightMiss = 0.01;
 
@@ -41,19 +41,6 @@ OwnMesh point_on_own_mesh(const case_data::Case& input,
   return {.first = responses[*input.study.objective],
           .second = responses[*input.study.second],
           .kept = all_kept(constraints)};
-}
-
-/// The largest miss of a bound, x the bound.
-double largest_miss(const std::vector<Constraint>& constraints) {
-  constexpr double kLeast = 1e-300;
-  double largest = 0.0;
-  for (const Constraint& c : constraints) {
-    if (!c.satisfied) {
-      largest = std::max(largest, std::abs(c.value - c.bound) /
-                                      std::max(std::abs(c.bound), kLeast));
-    }
-  }
-  return largest;
 }
 
 /// Of a study that holds margins to collapse: it misses nothing else.
@@ -166,28 +153,31 @@ bool search_again(StudyModels& models, const std::function<void()>& search) {
   return false;
 }
 
-bool return_to_kept(StudyModels& models, bool proven) {
+bool return_to_kept(StudyModels& models) {
   const std::optional<int> best = models.best_kept();
-  const StudyStage& stage = *models.stage();
-  if (!best ||
-      (proven && (models.has_dragged_answer() ||
-                  largest_miss(stage.outcome().constraints) < kSlightMiss))) {
+  const StudyOutcome& found = models.stage()->outcome();
+  if (!best || found.best.size() == 0 || models.has_dragged_answer()) {
     return false;
   }
-  const std::string why =
-      proven
-          ? fmt::format("is not kept on a mesh made for it: {}", stage.missed())
-          : "has no mesh of its own";
+  // By the bounds of the case: those of the search may have been raised.
+  const VectorX responses = models.answer().responses;
+  if (store::merit_of(models.input().study, responses).violation <
+      kSlightMiss) {
+    return false;
+  }
+  const std::string missed = missed_bounds(
+      models.input(), bound_constraints(models.input(), responses));
+  const bool limited = found.ended_by_limit();
   if (!models.go_on_at_best_kept()) {
     return false;
   }
   models.stage()->judge(
       {.status = RunStatus::Stopped,
        .message = fmt::format(
-           "the design that the search ended at {}; of the designs that keep "
-           "every bound on meshes of their own that of evaluation {} is the "
-           "best",
-           why, *best),
+           "the design that {} ended at is not kept on a mesh made for it: "
+           "{}; of the designs that keep every bound on meshes of their own "
+           "that of evaluation {} is the best",
+           limited ? "a limit of the search" : "the search", missed, *best),
        .best = {},
        .unproven = true},
       models.input());

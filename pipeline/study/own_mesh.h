@@ -31,10 +31,9 @@ bool judge_answer(StudyModels& models, const DeadlineMonitor& limited,
 bool search_again(StudyModels& models, const std::function<void()>& search);
 
 /// Puts the best design of which a model was frozen, and that keeps every bound
-/// there, in the place of a minimum that does not on a mesh of its own, or has
-/// none (not `proven`). False where there is nothing to put right, or no such
-/// design.
-bool return_to_kept(StudyModels& models, bool proven);
+/// there, in the place of a minimum that does not on a mesh of its own. False
+/// where there is nothing to put right, or no such design.
+bool return_to_kept(StudyModels& models);
 
 /// An answer that no mesh proves: it is not converged, and says why.
 StudyOutcome without_own_mesh(StudyOutcome found);

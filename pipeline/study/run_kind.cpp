@@ -111,6 +111,25 @@ std::vector<Constraint> bound_constraints(const case_data::Case& input,
   return constraints;
 }
 
+std::string missed_bounds(const case_data::Case& input,
+                          const std::vector<Constraint>& constraints) {
+  const bool bound = input.study.kind != case_data::StudyKind::Match;
+  std::string missed;
+  for (std::size_t k = 0; k < constraints.size(); ++k) {
+    const Constraint& c = constraints[k];
+    const ShownUnit unit =
+        bound
+            ? case_data::shown_unit(input, input.study.constraints[k].response)
+            : ShownUnit{};
+    if (!c.satisfied) {
+      missed += fmt::format("{}'{}' is {} and its bound {}",
+                            missed.empty() ? "" : ", ", c.name,
+                            unit.text(c.value), unit.text(c.bound));
+    }
+  }
+  return missed;
+}
+
 std::vector<Constraint> match_constraints(const case_data::Case& input,
                                           const MatchTargets* targets,
                                           const VectorX& responses) {

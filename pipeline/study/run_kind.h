@@ -84,6 +84,10 @@ std::vector<Constraint> match_constraints(const case_data::Case& input,
                                           const MatchTargets* targets,
                                           const VectorX& responses);
 
+/// Those of a minimum or a match that are not satisfied, in words; empty: none.
+std::string missed_bounds(const case_data::Case& input,
+                          const std::vector<Constraint>& constraints);
+
 /// Computes the neighbours of a difference side by side.
 std::function<void(const std::vector<VectorX>&)> prefetch_of(
     const StudyTask& task);

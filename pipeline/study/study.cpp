@@ -276,7 +276,9 @@ void StudyRun::conduct_study() {
     search_again(models_, [&] { models_.conduct(); });
     proven = judge();
   }
-  if (!return_to_kept(models_, proven) && !proven) {
+  if (proven) {
+    return_to_kept(models_);
+  } else {
     stage().leave(without_own_mesh(stage().outcome()));
   }
   for (std::string& point : judge_front(models_, limited_)) {

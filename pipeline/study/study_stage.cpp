@@ -140,24 +140,6 @@ void StudyStage::leave(StudyOutcome outcome) {
   outcome_ = std::move(outcome);
 }
 
-std::string StudyStage::missed() const {
-  const bool bound = input_.study.kind != case_data::StudyKind::Match;
-  std::string missed;
-  for (std::size_t k = 0; k < outcome_.constraints.size(); ++k) {
-    const Constraint& c = outcome_.constraints[k];
-    const ShownUnit unit =
-        bound ? case_data::shown_unit(input_,
-                                      input_.study.constraints[k].response)
-              : ShownUnit{};
-    if (!c.satisfied) {
-      missed += fmt::format("{}'{}' is {} and its bound {}",
-                            missed.empty() ? "" : ", ", c.name,
-                            unit.text(c.value), unit.text(c.bound));
-    }
-  }
-  return missed;
-}
-
 void StudyStage::judge(const StudyOutcome& found,
                        const case_data::Case& asked) {
   outcome_ = found;
@@ -180,7 +162,8 @@ void StudyStage::judge(const StudyOutcome& found,
                     input_.responses[*input_.study.objective].name,
                     shown.text(outcome_.objective));
   }
-  if (const std::string misses = missed(); !misses.empty()) {
+  if (const std::string misses = missed_bounds(asked, outcome_.constraints);
+      !misses.empty()) {
     outcome_.message += fmt::format(
         ". On a mesh made for this design it is not kept: {}", misses);
     if (outcome_.status == RunStatus::Converged) {
@@ -216,6 +199,11 @@ CoarseStage run_coarse_stage(const case_data::Case& input,
       }
       const bool last = !input.study.refreeze || round == store::kMostRefreezes;
       stage.conduct(last ? StudyStage::Leave::Late : StudyStage::Leave::Early);
+      // A mesh made where it began would be the same.
+      if (stage.stopped_early() &&
+          stage.outcome().best == stage.start().design) {
+        stage.conduct(StudyStage::Leave::Late);
+      }
       const int evaluations =
           store::count_of_model(store.all(), stage.model_name());
       result.seconds += stage.evaluator().seconds();

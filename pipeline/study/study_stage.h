@@ -45,8 +45,6 @@ class StudyStage {
   /// constraints that its best design, which this model is frozen at, has
   /// here, by the bounds of `asked`. Converged it stays where all is kept.
   void judge(const StudyOutcome& found, const case_data::Case& asked);
-  /// The bounds that the outcome misses, in words; empty: none.
-  std::string missed() const;
   /// What a new model is wanted for, as things stand.
   std::optional<store::Refreeze> wanted(const VectorX& best,
                                         bool converged) const;

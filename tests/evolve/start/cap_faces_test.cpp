@@ -63,6 +63,17 @@ class RandomPlate {
   std::mt19937 random_;
 };
 
+double longest_edge(const SurfaceMesh& face) {
+  double longest = 0.0;
+  for (const Triangle& t : face.facets) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      longest = std::max(
+          longest, (face.points[t[k]] - face.points[t[(k + 1) % 3]]).norm());
+    }
+  }
+  return longest;
+}
+
 TEST(CapFaces, RandomPlatesWithHolesAreFilled) {
   constexpr int kPlates = 200;
   for (unsigned seed = 0; seed < kPlates; ++seed) {
@@ -76,6 +87,7 @@ TEST(CapFaces, RandomPlatesWithHolesAreFilled) {
         << "plate " << seed;
     EXPECT_NEAR(surface_area(face), area, 1e-9 * area) << "plate " << seed;
     EXPECT_LT(face.facets.size(), 2000U) << "plate " << seed;
+    EXPECT_LT(longest_edge(face), 20.0) << "plate " << seed;
   }
 }
 

@@ -135,8 +135,10 @@ TEST(CaseWetted, MistakesOfBentWallsAreToldWithTheirLines) {
   expect_problem(changed(on_wall("wall = \"sphere\"\nradius = 50"),
                          "at = [0, 0, 0]\n", ""),
                  "solids.foot_pad has no 'at'; its wall is a sphere");
-  expect_problem(on_wall("wall = \"step\"\nface = \"top\""),
-                 "has no 'file'; its wall is a step, which needs file, face");
+  expect_problem(
+      on_wall("wall = \"step\"\nface = \"top\""),
+      "has no 'file'; its wall is the face of a STEP file, which needs "
+      "file, face");
   expect_problem(on_wall("wall = \"cone\"\naxis = [0, 0, 1]"),
                  "its wall is a cone, which needs at, axis, half_angle");
   expect_problem(

@@ -56,6 +56,28 @@ TEST(Refreeze, IsWantedAtTheBestDesignBesideInvertedOnes) {
   EXPECT_FALSE(found({answered(1, 25.0), answered(2, 27.0)}, 27.0));
 }
 
+// A study that returns to its start begins that model last; one that goes on
+// later may end on the model before.
+TEST(Refreeze, TheAnsweringModelIsTheLastThatKnowsTheAnswer) {
+  const std::string second = store::refrozen_model(2);
+  const std::string back = store::refrozen_model(1);
+  const std::vector<store::EvaluationRecord> records = {
+      answered(1, 25.0),         answered(2, 27.0),
+      answered(3, 27.0, second), answered(4, 29.0, second),
+      answered(5, 25.0, back),   answered(6, 30.0, second)};
+  EXPECT_EQ(store::answering_model(records), back);
+  const auto frozen = [&](double answer) {
+    return store::frozen_as_answered(strut_case(), records,
+                                     VectorX::Constant(1, answer));
+  };
+  EXPECT_EQ(frozen(25.0).design[0].initial, 25.0);
+  EXPECT_TRUE(frozen(25.0).earlier_freezes.empty());
+  for (const double answer : {27.0, 29.0, 30.0}) {
+    EXPECT_EQ(frozen(answer).design[0].initial, 27.0) << answer;
+    EXPECT_EQ(frozen(answer).earlier_freezes.size(), 1U) << answer;
+  }
+}
+
 TEST(Refreeze, IsWantedBesideFilletsThatTheModelCannotMake) {
   const auto beside = [](FailureKind kind) {
     return found(
@@ -97,13 +119,14 @@ TEST(Refreeze, TheDatabaseBringsBackTheWholeWay) {
       answered(3, 27.0, "frozen at evaluation 2"),
       answered(4, 30.0, "frozen at evaluation 2"),
       answered(5, 30.0, "frozen at evaluation 4")};
-  const case_data::Case last = store::frozen_as_answered(strut_case(), records);
+  const case_data::Case last = store::frozen_as_answered(
+      strut_case(), records, VectorX::Constant(1, 30.0));
   EXPECT_EQ(case_data::initial_design(last)[0], 30.0);
   ASSERT_EQ(last.earlier_freezes.size(), 2U);
   EXPECT_EQ(last.earlier_freezes[0][0], 25.0);
   EXPECT_EQ(last.earlier_freezes[1][0], 27.0);
-  const case_data::Case first =
-      store::frozen_as_answered(strut_case(), {records[0], records[1]});
+  const case_data::Case first = store::frozen_as_answered(
+      strut_case(), {records[0], records[1]}, VectorX::Constant(1, 27.0));
   EXPECT_EQ(case_data::initial_design(first)[0], 25.0);
   EXPECT_TRUE(first.earlier_freezes.empty());
 }

@@ -68,8 +68,8 @@ TEST(OwnMesh, ASearchThatLeavesItsReachGoesOnOnNewModels) {
   EXPECT_FALSE(others.empty());
 }
 
-/// Searches for a centre of mass that may be beyond the case's bound of -20,
-/// and returns to what is kept.
+/// Searches for a centre of mass that may be beyond the case's bound, by one of
+/// its own, and returns to what is kept.
 struct Returned {
   bool returned = false;
   study::StudyOutcome outcome;
@@ -78,8 +78,8 @@ struct Returned {
   std::string answering;
 };
 
-Returned return_from(double sought) {
-  const case_data::Case input = leaning_strut(-20.0);
+Returned return_from(double bound, double sought) {
+  const case_data::Case input = leaning_strut(bound);
   const TempFolder folder;
   store::StudyStore store = store::StudyStore::start(folder.path().string(),
                                                      {.case_hash = input.hash});
@@ -90,10 +90,8 @@ Returned return_from(double sought) {
   result.of_the_start = models.stage()->start().responses;
   models.working().study.constraints[0].lower = sought;
   models.stage()->conduct();
-  const bool proven = study::judge_answer(models, unlimited, [] {});
-  // By the bound of the case, not by that of the search.
-  models.stage()->judge(models.stage()->outcome(), input);
-  result.returned = study::return_to_kept(models, proven);
+  EXPECT_TRUE(study::judge_answer(models, unlimited, [] {}));
+  result.returned = study::return_to_kept(models);
   result.outcome = models.stage()->outcome();
   result.responses = models.stage()->start().responses;
   result.answering = store::answering_model(store.all());
@@ -103,7 +101,7 @@ Returned return_from(double sought) {
 // A search that misses the bound leaves the start, which keeps it: its own
 // model again, to the bit.
 TEST(OwnMesh, AMinimumThatIsNotKeptGivesWayToTheBestThatIs) {
-  const Returned at = return_from(-26.0);
+  const Returned at = return_from(-20.0, -26.0);
   ASSERT_TRUE(at.returned) << at.outcome.message;
   EXPECT_EQ(at.outcome.status, study::RunStatus::Stopped);
   EXPECT_TRUE(all_kept(at.outcome.constraints));
@@ -115,10 +113,20 @@ TEST(OwnMesh, AMinimumThatIsNotKeptGivesWayToTheBestThatIs) {
   EXPECT_EQ(at.answering, store::refrozen_model(1));
 }
 
+// The bounds of the search may be above those of the case, as of a margin that
+// is doubted: what misses only them is the answer.
+TEST(OwnMesh, AMinimumThatMissesRaisedBoundsAloneStays) {
+  const Returned at = return_from(-20.0, 1000.0);
+  EXPECT_FALSE(at.returned) << at.outcome.message;
+  EXPECT_FALSE(all_kept(at.outcome.constraints));
+}
+
 TEST(OwnMesh, AMinimumThatIsKeptButForTheMeshesNoiseStays) {
-  const Returned at = return_from(-20.1);
+  const Returned at = return_from(-20.0, -20.1);
   EXPECT_FALSE(at.returned) << at.outcome.message;
   EXPECT_NEAR(at.responses[1], -20.1, 0.1);
+  const Returned beside_zero = return_from(0.0, -0.005);
+  EXPECT_FALSE(beside_zero.returned) << beside_zero.outcome.message;
 }
 
 }  // namespace
