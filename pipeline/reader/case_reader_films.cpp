@@ -363,16 +363,17 @@ case_data::WettedWall wall_of_face(CaseContext& context, const CaseTable& table,
     return case_data::QuantityVector{number(v.x()), number(v.y()),
                                      number(v.z())};
   };
-  const std::optional<WallFace> face = read_wall_face(context, table, result);
-  wall.kind = face ? face->kind : films::WallKind::Plane;
-  wall.at = vector(face ? face->at : Vec3::Zero());
-  wall.normal = vector(face ? face->normal : Vec3::UnitZ());
-  if (wall.kind == films::WallKind::Cylinder ||
-      wall.kind == films::WallKind::Sphere) {
-    wall.radius = number(face->radius);
+  const films::FilmWall face =
+      read_wall_face(context, table, result).value_or(films::FilmWall{});
+  wall.kind = face.kind;
+  wall.at = vector(face.at);
+  wall.normal = vector(face.normal);
+  if (face.kind == films::WallKind::Cylinder ||
+      face.kind == films::WallKind::Sphere) {
+    wall.radius = number(face.radius);
   }
-  if (wall.kind == films::WallKind::Cone) {
-    wall.half_angle = number(face->half_angle);
+  if (face.kind == films::WallKind::Cone) {
+    wall.half_angle = number(face.half_angle);
   }
   return wall;
 }
@@ -507,8 +508,7 @@ TableSpec solid_table() {
         ".stp"},
        {"face", K::Text, D::None, false,
         "of wetted on a face of a STEP file: its name there, or face_1, "
-        "face_2, "
-        "..., a plane, cylinder, sphere or cone"},
+        "face_2, ..., a plane, cylinder, sphere or cone"},
        {"surface", K::Name, D::None, false, "of file: as of films"},
        {"scale", K::Constant, D::None, false, "of file: as of films"},
        {"within", K::Constant, D::Length, false, "of file: as of films"},

@@ -308,9 +308,9 @@ void read_step_solids(CaseContext& context,
   }
 }
 
-std::optional<WallFace> read_wall_face(CaseContext& context,
-                                       const CaseTable& table,
-                                       case_data::Case& result) {
+std::optional<films::FilmWall> read_wall_face(CaseContext& context,
+                                              const CaseTable& table,
+                                              case_data::Case& result) {
   const auto path = table.text("file");
   const auto name = table.text("face");
   const std::string* text =
@@ -332,26 +332,27 @@ std::optional<WallFace> read_wall_face(CaseContext& context,
   }
   const ExactFace* face = &shape.faces[static_cast<std::size_t>(found)];
   if (const auto* plane = std::get_if<ExactPlane>(&face->surface)) {
-    return WallFace{.at = plane->frame.origin, .normal = plane->frame.z};
+    return films::FilmWall{.at = plane->frame.origin, .normal = plane->frame.z};
   }
   if (const auto* round = std::get_if<ExactCylinder>(&face->surface)) {
-    return WallFace{.kind = films::WallKind::Cylinder,
-                    .at = round->frame.origin,
-                    .normal = round->frame.z,
-                    .radius = round->radius};
+    return films::FilmWall{.at = round->frame.origin,
+                           .normal = round->frame.z,
+                           .kind = films::WallKind::Cylinder,
+                           .radius = round->radius};
   }
   if (const auto* ball = std::get_if<ExactSphere>(&face->surface)) {
-    return WallFace{.kind = films::WallKind::Sphere,
-                    .at = ball->frame.origin,
-                    .radius = ball->radius};
+    return films::FilmWall{.at = ball->frame.origin,
+                           .kind = films::WallKind::Sphere,
+                           .radius = ball->radius};
   }
   if (const auto* cone = std::get_if<ExactCone>(&face->surface)) {
     const double rise = cone->radius / std::tan(cone->angle);
     const bool widens = cone->angle > 0.0;
-    return WallFace{.kind = films::WallKind::Cone,
-                    .at = cone->frame.origin - rise * cone->frame.z,
-                    .normal = widens ? cone->frame.z : Vec3(-cone->frame.z),
-                    .half_angle = std::abs(cone->angle)};
+    return films::FilmWall{
+        .at = cone->frame.origin - rise * cone->frame.z,
+        .normal = widens ? cone->frame.z : Vec3(-cone->frame.z),
+        .kind = films::WallKind::Cone,
+        .half_angle = std::abs(cone->angle)};
   }
   context.problems.add(
       table.line("face"),

@@ -87,19 +87,11 @@ void read_step_solids(CaseContext& context,
                       const std::vector<CaseTable>& solids,
                       case_data::Case& result);
 
-/// The wall of kind "step" of a wetted solid: what its face lies on, of a cone
-/// from the apex into it. Nothing, and told, where there is no such face, or it
-/// is none that films slide on.
-struct WallFace {
-  films::WallKind kind = films::WallKind::Plane;
-  Vec3 at = Vec3::Zero();       // [length]
-  Vec3 normal = Vec3::UnitZ();  // of a plane; else the axis
-  double radius = 0.0;
-  double half_angle = 0.0;  // [rad]
-};
-std::optional<WallFace> read_wall_face(CaseContext& context,
-                                       const CaseTable& table,
-                                       case_data::Case& result);
+/// The wall of kind "step" of a wetted solid: what its face lies on. Nothing,
+/// and told, where there is no such face, or it is none that films slide on.
+std::optional<films::FilmWall> read_wall_face(CaseContext& context,
+                                              const CaseTable& table,
+                                              case_data::Case& result);
 
 /// The faces of the solid of that name among the solids; none where it could
 /// not be read.

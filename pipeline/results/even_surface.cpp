@@ -8,6 +8,7 @@
 
 #include <Eigen/Geometry>
 
+#include "core/geometry/box_tree.h"
 #include "core/heed_stop.h"
 #include "evolve/films/film_complex.h"
 #include "evolve/groom/surface_editor.h"
@@ -32,87 +33,80 @@ struct Bend {
   double size = 0.0;  // of edges there
 };
 
-/// Wanted edge lengths about the places where faces bend: a tree of boxes, each
-/// of which knows the least size in it, so that of a hundred thousand bends
-/// only those that may matter are asked.
+/// Wanted edge lengths about the places where faces bend. Each node of the tree
+/// knows the least size in it, so that of a hundred thousand bends only those
+/// that may matter are asked.
 class BendSizes {
  public:
   BendSizes(std::vector<Bend> bends, double edge)
-      : edge_(edge), bends_(std::move(bends)), boxes_(bends_.size()) {
-    build(0, bends_.size());
+      : edge_(edge),
+        bends_(std::move(bends)),
+        tree_(items(bends_)),
+        least_(tree_.nodes().size(), edge) {
+    for (std::size_t k = least_.size(); k-- > 0;) {  // children before parents
+      const BoxTree::Node& node = tree_.nodes()[k];
+      if (!node.is_leaf()) {
+        least_[k] = std::min(least_[k + 1], least_[node.second_child]);
+        continue;
+      }
+      for (int i = node.first; i < node.last; ++i) {
+        least_[k] = std::min(least_[k], bend_at(i).size);
+      }
+    }
   }
 
   /// The least of what all bends leave here.
   double at(const Vec3& place) const {
     double size = edge_;
-    ask(0, bends_.size(), place, size);
+    if (!least_.empty()) {
+      ask(0, place, size);
+    }
     return size;
   }
 
  private:
-  struct Box {
-    Eigen::AlignedBox3d places;
-    double least = 0.0;
-  };
-
-  /// The bends [begin, end) have theirs at their middle one.
-  static std::size_t middle(std::size_t begin, std::size_t end) {
-    return begin + (end - begin) / 2;
+  static std::vector<BoxTree::Item> items(const std::vector<Bend>& bends) {
+    std::vector<BoxTree::Item> items;
+    items.reserve(bends.size());
+    for (const Bend& bend : bends) {
+      items.push_back({.id = static_cast<int>(items.size()),
+                       .bounds = {bend.place, bend.place},
+                       .center = bend.place});
+    }
+    return items;
   }
 
-  void build(std::size_t begin, std::size_t end) {
-    if (begin == end) {
+  const Bend& bend_at(int item) const {
+    return bends_[static_cast<std::size_t>(tree_.items()[item].id)];
+  }
+
+  /// What the bends of a node leave at `place` is no less.
+  double bound(int id, const Vec3& place) const {
+    return least_[id] + kGrowth * tree_.nodes()[id].bounds.to(place);
+  }
+
+  void ask(int id, const Vec3& place, double& size) const {
+    if (bound(id, place) >= size) {
       return;
     }
-    Box box{.places = {}, .least = bends_[begin].size};
-    for (std::size_t k = begin; k < end; ++k) {
-      box.places.extend(bends_[k].place);
-      box.least = std::min(box.least, bends_[k].size);
-    }
-    int axis = 0;
-    box.places.sizes().maxCoeff(&axis);
-    const std::size_t half = middle(begin, end);
-    const auto at = [&](std::size_t k) {
-      return bends_.begin() + static_cast<std::ptrdiff_t>(k);
-    };
-    std::nth_element(at(begin), at(half), at(end),
-                     [axis](const Bend& a, const Bend& b) {
-                       return a.place[axis] < b.place[axis];
-                     });
-    boxes_[half] = box;
-    build(begin, half);
-    build(half + 1, end);
-  }
-
-  /// What the bends [begin, end) leave at `place` is no less.
-  double bound(std::size_t begin, std::size_t end, const Vec3& place) const {
-    if (begin == end) {
-      return edge_;
-    }
-    const Box& box = boxes_[middle(begin, end)];
-    return box.least + kGrowth * box.places.exteriorDistance(place);
-  }
-
-  void ask(std::size_t begin, std::size_t end, const Vec3& place,
-           double& size) const {
-    if (bound(begin, end, place) >= size) {
+    const BoxTree::Node& node = tree_.nodes()[id];
+    if (node.is_leaf()) {
+      for (int i = node.first; i < node.last; ++i) {
+        const Bend& bend = bend_at(i);
+        size =
+            std::min(size, bend.size + kGrowth * (place - bend.place).norm());
+      }
       return;
     }
-    const std::size_t half = middle(begin, end);
-    const Bend& bend = bends_[half];
-    size = std::min(size, bend.size + kGrowth * (place - bend.place).norm());
-    if (bound(begin, half, place) < bound(half + 1, end, place)) {
-      ask(begin, half, place, size);
-      ask(half + 1, end, place, size);
-    } else {
-      ask(half + 1, end, place, size);
-      ask(begin, half, place, size);
-    }
+    const bool turned = bound(node.second_child, place) < bound(id + 1, place);
+    ask(turned ? node.second_child : id + 1, place, size);
+    ask(turned ? id + 1 : node.second_child, place, size);
   }
 
   double edge_;
   std::vector<Bend> bends_;
-  std::vector<Box> boxes_;
+  BoxTree tree_;
+  std::vector<double> least_;  // by node
 };
 
 /// An edge between two facets.

@@ -66,9 +66,10 @@ void StudyModels::note_kept() {
     return;
   }
   const forward::Evaluation& start = now_.stage->start();
-  const double objective = start.responses[*input_.study.objective];
+  const auto objective = static_cast<Eigen::Index>(*input_.study.objective);
   const auto record = store_.find(now_.stage->model_name(), start.design);
-  if (!record || (kept_ && objective >= kept_->objective) ||
+  if (!record ||
+      (kept_ && start.responses[objective] >= kept_->at.responses[objective]) ||
       !all_kept(bound_constraints(input_, start.responses))) {
     return;
   }
@@ -78,8 +79,7 @@ void StudyModels::note_kept() {
                   .reason = "the best design that keeps every bound on a mesh "
                             "of its own",
                   .shift = {},
-                  .responses = start.responses},
-           .objective = objective};
+                  .responses = start.responses}};
 }
 
 /// Its totals are all that stays of it.

@@ -107,7 +107,6 @@ class StudyModels {
   struct KeptStart {
     case_data::Case frozen;  // what its model is frozen of
     store::Refreeze at;
-    double objective = 0.0;
   };
   void end(Model model);
   void update_time_limit();

@@ -30,23 +30,32 @@ case_data::Case leaning_strut(double least_centre) {
   return *reader::read_case_text(text, "case.toml").input;
 }
 
+/// A study of it, at its start.
+struct OpenStudy {
+  explicit OpenStudy(double least_centre) : input(leaning_strut(least_centre)) {
+    models.freeze();
+  }
+
+  case_data::Case input;
+  TempFolder folder;
+  store::StudyStore store = store::StudyStore::start(folder.path().string(),
+                                                     {.case_hash = input.hash});
+  study::StudyModels models{input, store, {}};
+  study::DeadlineMonitor unlimited{silent_monitor(), 0.0};
+};
+
 // Seeking a bound that cannot be kept, the first search ends as far to the
 // right as may be; the one from the mesh made there has to end far to the left.
 TEST(OwnMesh, ASearchThatLeavesItsReachGoesOnOnNewModels) {
   constexpr double kLeast = -20.0;
-  const case_data::Case input = leaning_strut(kLeast);
-  const TempFolder folder;
-  store::StudyStore store = store::StudyStore::start(folder.path().string(),
-                                                     {.case_hash = input.hash});
-  study::StudyModels models(input, store, {});
-  const study::DeadlineMonitor unlimited(silent_monitor(), 0.0);
-  models.freeze();
+  OpenStudy open(kLeast);
+  study::StudyModels& models = open.models;
   models.working().study.constraints[0].lower = 1000.0;
   models.stage()->conduct();
   ASSERT_FALSE(all_kept(models.stage()->outcome().constraints));
 
   int rounds = 0;
-  ASSERT_TRUE(study::judge_answer(models, unlimited, [&] {
+  ASSERT_TRUE(study::judge_answer(models, open.unlimited, [&] {
     ++rounds;
     models.working().study.constraints[0].lower = kLeast;
   }));
@@ -79,22 +88,17 @@ struct Returned {
 };
 
 Returned return_from(double bound, double sought) {
-  const case_data::Case input = leaning_strut(bound);
-  const TempFolder folder;
-  store::StudyStore store = store::StudyStore::start(folder.path().string(),
-                                                     {.case_hash = input.hash});
-  study::StudyModels models(input, store, {});
-  const study::DeadlineMonitor unlimited(silent_monitor(), 0.0);
-  models.freeze();
+  OpenStudy open(bound);
+  study::StudyModels& models = open.models;
   Returned result;
   result.of_the_start = models.stage()->start().responses;
   models.working().study.constraints[0].lower = sought;
   models.stage()->conduct();
-  EXPECT_TRUE(study::judge_answer(models, unlimited, [] {}));
+  EXPECT_TRUE(study::judge_answer(models, open.unlimited, [] {}));
   result.returned = study::return_to_kept(models);
   result.outcome = models.stage()->outcome();
   result.responses = models.stage()->start().responses;
-  result.answering = store::answering_model(store.all());
+  result.answering = store::answering_model(open.store.all());
   return result;
 }
 
