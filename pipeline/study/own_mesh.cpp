@@ -19,8 +19,10 @@ namespace {
 // often and this near to it, x the ranges of the variables: another mesh moves
 // every figure by its own noise, so that a search without these bounds would
 // find another answer on each. The last is within what counts as the same
-// design.
-constexpr std::array<double, 4> kReaches = {1.0, 0.1, 0.03, 0.009};
+// design; it is tried some times more, for where nothing so near is kept the
+// whole of the bounds is searched and may end elsewhere.
+constexpr std::array<double, 6> kReaches = {1.0,   0.1,   0.03,
+                                            0.009, 0.009, 0.009};
 
 // Where a margin is missed on the answer's own mesh, so many evaluations there
 // may find it before it is sought on the model before: above its bound by so

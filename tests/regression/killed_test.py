@@ -125,11 +125,12 @@ class Killed(Study):
         for number in range(MOMENTS):
             out = self.folder / f"killed {number}"
             running = self.start_study(out, start_new_session=True)
-            # Moments spread over the whole run, one in each part of it.
+            # Moments spread over the whole run, one in each part of it, the
+            # parts shorter at its begin: the first evaluation comes soon.
             begun = time.monotonic()
             try:
-                running.wait(self.seconds * (number + choice.random()) /
-                             MOMENTS)
+                part = (number + choice.random()) / MOMENTS
+                running.wait(self.seconds * part ** 1.5)
                 # It ran alone, and faster than the first did.
                 self.seconds = min(self.seconds, time.monotonic() - begun)
             except subprocess.TimeoutExpired:
