@@ -19,6 +19,14 @@ Vec3 area_vector2(const SurfaceMesh& mesh, int facet) {
   return (mesh.points[t[1]] - a).cross(mesh.points[t[2]] - a);
 }
 
+Vec3 polygon_area_vector(const Points& rim) {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t i = 1; i + 1 < rim.size(); ++i) {
+    sum += (rim[i] - rim[0]).cross(rim[i + 1] - rim[0]);
+  }
+  return 0.5 * sum;
+}
+
 double surface_area(const SurfaceMesh& mesh, int label) {
   double sum = 0.0;
   for (int f = 0; f < static_cast<int>(mesh.facets.size()); ++f) {

@@ -47,6 +47,10 @@ int body_count(const SurfaceMesh& mesh);
 /// Twice the facet's area times its unit normal: (b - a) x (c - a).
 Vec3 area_vector2(const SurfaceMesh& mesh, int facet);
 
+/// Newell's area vector of a closed polygon: its area times its normal,
+/// counter-clockwise seen from the tip; of the shadow when not planar.
+Vec3 polygon_area_vector(const Points& rim);
+
 /// Sum of facet areas [length^2]; of one label when `label` is not negative.
 double surface_area(const SurfaceMesh& mesh, int label = -1);
 

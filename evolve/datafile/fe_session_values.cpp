@@ -73,7 +73,8 @@ std::optional<double> FeSession::quantity(const std::string& name,
     if (quantity.name == name) {
       if (attribute == "value") {
         return energy::FilmEnergy(complex_).quantities(
-            complex_.mesh.points)[static_cast<Eigen::Index>(q)];
+            complex_.mesh.points,
+            energy::targets_of(complex_))[static_cast<Eigen::Index>(q)];
       }
       const bool is_held = quantity.role == films::FilmQuantity::Role::Held;
       return attribute == "target" && is_held ? std::optional(quantity.target)

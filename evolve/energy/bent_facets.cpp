@@ -197,7 +197,7 @@ class CornersTerm : public FilmTerm {
       : of_facet_(std::move(of_facet)), factor_(factor) {}
 
   FacetJet jet(const Element& element, const std::array<Vec3, 3>& corner,
-               JetOrder order) const override {
+               JetOrder order, Numbers /*numbers*/) const override {
     const double w = factor_ * element.sign;
     FacetJet result;
     if (order == JetOrder::Value) {

@@ -10,6 +10,7 @@
 #include "core/operation_count.h"
 #include "evolve/energy/bent_facets.h"
 #include "evolve/energy/facet_terms.h"
+#include "evolve/energy/over_term.h"
 
 namespace meniscus::energy {
 
@@ -108,7 +109,7 @@ FacetJet FilmEnergy::jet_of(const BentArea& area,
                             const FilmTerm::Element& element,
                             const Points& points, JetOrder order) const {
   return area.term->jet(element, corners_of(points, facets_[element.facet]),
-                        order);
+                        order, {});
 }
 
 double FilmEnergy::value(const Points& points,
@@ -134,11 +135,11 @@ double FilmEnergy::value(const Points& points,
   }
   for (const auto& term : terms_) {
     if (term->functional() == -1) {
-      for (const FilmTerm::Element& e : term->elements()) {
-        sum +=
-            term->jet(e, corners_of(points, facets_[e.facet]), JetOrder::Value)
-                .value;
-      }
+      over_term(*term, points, JetOrder::Value,
+                numbers_of(*term, targets.numbers),
+                [&](const FilmTerm::Element& /*e*/, const FacetJet& jet) {
+                  sum += jet.value;
+                });
     }
   }
   return sum;
@@ -182,26 +183,26 @@ VectorX FilmEnergy::volumes(const Points& points) const {
   }
   for (const auto& term : terms_) {
     if (term->functional() >= 0) {
-      for (const FilmTerm::Element& e : term->elements()) {
-        sum[term->functional()] +=
-            term->jet(e, corners_of(points, facets_[e.facet]), JetOrder::Value)
-                .value;
-      }
+      over_term(*term, points, JetOrder::Value, {},
+                [&](const FilmTerm::Element& /*e*/, const FacetJet& jet) {
+                  sum[term->functional()] += jet.value;
+                });
     }
   }
   return sum;
 }
 
-VectorX FilmEnergy::quantities(const Points& points) const {
+VectorX FilmEnergy::quantities(const Points& points,
+                               const films::FilmTargets& targets) const {
   VectorX sum = VectorX::Zero(quantity_count_);
   for (const auto& term : terms_) {
     const int q = term->quantity();
-    for (const FilmTerm::Element& e : term->elements()) {
-      if (q >= 0) {
-        sum[q] +=
-            term->jet(e, corners_of(points, facets_[e.facet]), JetOrder::Value)
-                .value;
-      }
+    if (q >= 0) {
+      over_term(*term, points, JetOrder::Value,
+                numbers_of(*term, targets.numbers),
+                [&](const FilmTerm::Element& /*e*/, const FacetJet& jet) {
+                  sum[q] += jet.value;
+                });
     }
   }
   for (int q = 0; q < quantity_count_; ++q) {
@@ -218,7 +219,7 @@ Points FilmEnergy::gradient(const Points& points,
         has_tension(static_cast<int>(s)) ? targets.tension[s] : 0.0;
   }
   Points sum = area_gradient(points, weight);
-  add_term_gradients(points, -1, sum);
+  add_term_gradients(points, -1, targets.numbers, sum);
   return sum;
 }
 
@@ -283,19 +284,18 @@ Points FilmEnergy::area_gradient(const Points& points,
 }
 
 void FilmEnergy::add_term_gradients(const Points& points, int functional,
+                                    const std::vector<VectorX>& numbers,
                                     Points& sum) const {
   for (const auto& term : terms_) {
     if (term->functional() != functional) {
       continue;
     }
-    for (const FilmTerm::Element& e : term->elements()) {
-      const Triangle& t = facets_[e.facet];
-      const FacetJet jet =
-          term->jet(e, corners_of(points, t), JetOrder::Gradient);
-      for (int k = 0; k < 3; ++k) {
-        sum[t[k]] += jet.gradient.segment<3>(3 * k);
-      }
-    }
+    over_term(*term, points, JetOrder::Gradient, numbers_of(*term, numbers),
+              [&](const FilmTerm::Element& e, const FacetJet& jet) {
+                for (int k = 0; k < 3; ++k) {
+                  sum[facets_[e.facet][k]] += jet.gradient.segment<3>(3 * k);
+                }
+              });
   }
 }
 
@@ -320,7 +320,7 @@ Points FilmEnergy::functional_gradient(const Points& points,
       sum[t[2]] += w * a.cross(b);
     }
   }
-  add_term_gradients(points, functional, sum);
+  add_term_gradients(points, functional, {}, sum);
   return sum;
 }
 

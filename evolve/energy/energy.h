@@ -56,7 +56,8 @@ class FilmEnergy {
   /// Signed volumes of the bodies [length^3], then the held quantities.
   VectorX volumes(const Points& points) const;
   /// Value of every quantity of the complex.
-  VectorX quantities(const Points& points) const;
+  VectorX quantities(const Points& points,
+                     const films::FilmTargets& targets) const;
 
   /// dE/dx, one per vertex [force]; boundary vertices included.
   Points gradient(const Points& points,
@@ -130,12 +131,19 @@ class FilmEnergy {
   FacetJet jet_of(const BentArea& area, const FilmTerm::Element& element,
                   const Points& points, JetOrder order) const;
   std::vector<double> pressure_jumps(const VectorX& pressure) const;
+  /// Calls each(element, jet) for the elements of a term, in order. `numbers`:
+  /// of its field.
+  template <class Each>
+  void over_term(const FilmTerm& term, const Points& points, JetOrder order,
+                 Numbers numbers, const Each& each) const;
   void add_term_gradients(const Points& points, int functional,
+                          const std::vector<VectorX>& numbers,
                           Points& sum) const;
   void find_floating(const films::FilmComplex& complex);
   void build_pattern();
-  void add_terms(const Points& points, const VectorX& pressure,
-                 const Points& directions, std::vector<double>& out) const;
+  void add_terms(const Points& points, const std::vector<VectorX>& numbers,
+                 const VectorX& pressure, const Points& directions,
+                 std::vector<double>& out) const;
   void add_wall_curvature(const Points& points, const Points& directions,
                           const Points& gradient,
                           std::vector<double>& out) const;

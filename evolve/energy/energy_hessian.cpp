@@ -9,6 +9,7 @@
 #include "core/operation_count.h"
 #include "evolve/energy/energy.h"
 #include "evolve/energy/facet_terms.h"
+#include "evolve/energy/over_term.h"
 
 namespace meniscus::energy {
 
@@ -163,7 +164,7 @@ void FilmEnergy::elements(const Points& points, const Points& directions,
   }
   // Fields bring their own second derivatives; walls bring the curvature of the
   // surface that vertices slide on, (grad L . n) II.
-  add_terms(points, pressure, directions, out);
+  add_terms(points, targets.numbers, pressure, directions, out);
   for (const BentArea& area : bent_) {
     for (const FilmTerm::Element& e : area.elements) {
       add_jet(e.facet, targets.tension[area.surface],
@@ -222,8 +223,9 @@ void FilmEnergy::add_block(int facet, int corner_a, int corner_b,
   }
 }
 
-void FilmEnergy::add_terms(const Points& points, const VectorX& pressure,
-                           const Points& directions,
+void FilmEnergy::add_terms(const Points& points,
+                           const std::vector<VectorX>& numbers,
+                           const VectorX& pressure, const Points& directions,
                            std::vector<double>& out) const {
   for (const auto& term : terms_) {
     const int functional = term->functional();
@@ -233,11 +235,10 @@ void FilmEnergy::add_terms(const Points& points, const VectorX& pressure,
     if (factor == 0.0) {
       continue;
     }
-    for (const FilmTerm::Element& e : term->elements()) {
-      const FacetJet jet =
-          term->jet(e, corners_of(points, facets_[e.facet]), JetOrder::Hessian);
-      add_jet(e.facet, factor, jet, directions, out);
-    }
+    over_term(*term, points, JetOrder::Hessian, numbers_of(*term, numbers),
+              [&](const FilmTerm::Element& e, const FacetJet& jet) {
+                add_jet(e.facet, factor, jet, directions, out);
+              });
   }
 }
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "evolve/energy/facet_terms.h"
+#include "evolve/energy/over_term.h"
 
 namespace meniscus::energy {
 
@@ -43,6 +44,7 @@ FilmProducts::FilmProducts(const FilmEnergy& energy,
                            const films::FilmTargets& targets, VectorX pressure)
     : energy_(energy),
       tension_(VectorX::Zero(static_cast<Eigen::Index>(energy.plain_.size()))),
+      numbers_(targets.numbers),
       energies_(1.0),
       pressure_(std::move(pressure)) {
   for (std::size_t s = 0; s < energy.plain_.size(); ++s) {
@@ -162,20 +164,17 @@ void FilmProducts::add_terms(const Points& points, const Points& motion,
     if (factor == 0.0) {
       continue;
     }
-    for (const FilmTerm::Element& e : term->elements()) {
-      const Triangle& at = energy_.facets_[e.facet];
-      Eigen::Matrix<double, 9, 1> d;
-      d << motion[at[0]], motion[at[1]], motion[at[2]];
-      if (d.isZero(0.0)) {
-        continue;
-      }
-      const FacetJet jet =
-          term->jet(e, corners_of(points, at), JetOrder::Hessian);
-      const Eigen::Matrix<double, 9, 1> product = factor * (jet.hessian * d);
-      for (int i = 0; i < 3; ++i) {
-        sum[at[i]] += product.segment<3>(3 * i);
-      }
-    }
+    energy_.over_term(
+        *term, points, JetOrder::Hessian, numbers_of(*term, numbers_),
+        [&](const FilmTerm::Element& e, const FacetJet& jet) {
+          const Triangle& at = energy_.facets_[e.facet];
+          FilmTerm::Vector9 d;
+          d << motion[at[0]], motion[at[1]], motion[at[2]];
+          const FilmTerm::Vector9 product = factor * (jet.hessian * d);
+          for (int i = 0; i < 3; ++i) {
+            sum[at[i]] += product.segment<3>(3 * i);
+          }
+        });
   }
 }
 
@@ -244,12 +243,7 @@ Points FilmProducts::third_times(const Points& points,
   // Third derivatives of fields: a difference of their exact second ones along
   // the motion, of fourth order in a small step.
   if (has_terms()) {
-    double most = 0.0;
-    for (const Vec3& d : motion) {
-      most = std::max(most, d.norm());
-    }
-    const double step =
-        kTermStep * e.mean_edge(points) / std::max(most, 1e-300);
+    const double step = term_step(points, motion);
     for (const auto& [times, weight] : kSlope) {
       Points moved = points;
       flat(moved) += times * step * flat(motion);
@@ -257,6 +251,96 @@ Points FilmProducts::third_times(const Points& points,
       add_terms(moved, motion, weight / step, sum);
     }
   }
+  return sum;
+}
+
+double FilmProducts::term_step(const Points& points,
+                               const Points& motion) const {
+  double most = 0.0;
+  for (const Vec3& d : motion) {
+    most = std::max(most, d.norm());
+  }
+  return kTermStep * energy_.mean_edge(points) / std::max(most, 1e-300);
+}
+
+/// Calls each(term, quantity) for the energies whose fields have numbers.
+template <class Each>
+void FilmProducts::over_numbers(const Each& each) const {
+  for (const auto& term : energy_.terms_) {
+    const auto q = static_cast<std::size_t>(term->quantity());
+    if (term->has_numbers() && term->functional() == -1 &&
+        q < numbers_.size()) {
+      each(*term, q);
+    }
+  }
+}
+
+std::vector<VectorX> FilmProducts::no_numbers() const {
+  std::vector<VectorX> sum;
+  for (const VectorX& of_quantity : numbers_) {
+    sum.push_back(VectorX::Zero(of_quantity.size()));
+  }
+  return sum;
+}
+
+void FilmProducts::add_number_slopes(const Points& points, const Points& motion,
+                                     double factor,
+                                     std::vector<VectorX>& sum) const {
+  over_numbers([&](const FilmTerm& term, std::size_t q) {
+    for (const FilmTerm::Element& e : term.elements()) {
+      const Triangle& at = energy_.facets_[e.facet];
+      term.add_by_numbers(e, corners_of(points, at), corners_of(motion, at),
+                          factor, numbers_of(term, numbers_), sum[q]);
+    }
+  });
+}
+
+std::vector<VectorX> FilmProducts::number_slopes(const Points& points,
+                                                 const Points& motion,
+                                                 double energies) const {
+  std::vector<VectorX> sum = no_numbers();
+  add_number_slopes(points, motion, energies_, sum);
+  over_numbers([&](const FilmTerm& term, std::size_t q) {
+    for (const FilmTerm::Element& e : term.elements()) {
+      if (energies == 0.0) {
+        break;
+      }
+      term.add_value_by_numbers(e, corners_of(points, energy_.facets_[e.facet]),
+                                energies, numbers_of(term, numbers_), sum[q]);
+    }
+  });
+  return sum;
+}
+
+std::vector<VectorX> FilmProducts::number_curvatures(
+    const Points& points, const Points& motion) const {
+  std::vector<VectorX> sum = no_numbers();
+  const double step = term_step(points, motion);
+  for (const auto& [times, weight] : kSlope) {
+    Points moved = points;
+    flat(moved) += times * step * flat(motion);
+    add_number_slopes(moved, motion, energies_ * weight / step, sum);
+  }
+  return sum;
+}
+
+Points FilmProducts::number_motion(const Points& points,
+                                   const std::vector<VectorX>& rates) const {
+  Points sum(points.size(), Vec3::Zero());
+  over_numbers([&](const FilmTerm& term, std::size_t q) {
+    if (q >= rates.size() || rates[q].size() != numbers_[q].size()) {
+      return;
+    }
+    for (const FilmTerm::Element& e : term.elements()) {
+      const Triangle& at = energy_.facets_[e.facet];
+      const FilmTerm::Vector9 rate = term.gradient_rate(
+          e, corners_of(points, at), numbers_of(term, numbers_),
+          numbers_of(term, rates));
+      for (int k = 0; k < 3; ++k) {
+        sum[at[k]] += rate.segment<3>(3 * k);
+      }
+    }
+  });
   return sum;
 }
 

@@ -27,6 +27,17 @@ class FilmProducts {
   /// And how fast that rate grows: motion . (d2 area x motion).
   VectorX area_curvatures(const Points& points, const Points& motion) const;
 
+  /// Per quantity the derivatives by its field's numbers: of motion . slope of
+  /// E, of `energies` x E itself added; empty: it has none.
+  std::vector<VectorX> number_slopes(const Points& points, const Points& motion,
+                                     double energies) const;
+  /// And of motion . (second derivative x motion), as third_times().
+  std::vector<VectorX> number_curvatures(const Points& points,
+                                         const Points& motion) const;
+  /// How fast the slope of E changes as the numbers do, one list per quantity.
+  Points number_motion(const Points& points,
+                       const std::vector<VectorX>& rates) const;
+
   /// Gradient by all vertices of sum weight x lumped area, one weight per
   /// unknown.
   Points metric_gradient(const Points& points, const VectorX& weight) const;
@@ -47,10 +58,17 @@ class FilmProducts {
                  Points& sum) const;
   double weight_of(int functional) const;
   bool has_terms() const;
+  template <class Each>
+  void over_numbers(const Each& each) const;
+  void add_number_slopes(const Points& points, const Points& motion,
+                         double factor, std::vector<VectorX>& sum) const;
+  std::vector<VectorX> no_numbers() const;
+  double term_step(const Points& points, const Points& motion) const;
 
   const FilmEnergy& energy_;
-  VectorX tension_;  // one per surface
-  double energies_;  // factor of E's other terms
+  VectorX tension_;               // one per surface
+  std::vector<VectorX> numbers_;  // per quantity
+  double energies_;               // factor of E's other terms
   VectorX pressure_;
 };
 

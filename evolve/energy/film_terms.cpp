@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/geometry/edge_key.h"
 #include "evolve/energy/bent_facets.h"
+#include "evolve/energy/pole_field.h"
 #include "evolve/energy/term_kinds.h"
 
 namespace meniscus::energy {
@@ -152,15 +153,19 @@ class FilmTermBuilder {
               facets_of(quantity.surfaces, factor), functional, number);
           break;
         case films::FilmQuantity::Kind::BodyVolume:
-          add_body_quantity(quantity,
-                            complex_.volume_rule == films::VolumeRule::Column
-                                ? FieldFunction(column_field)
-                                : FieldFunction(cone_field),
-                            factor, functional, number);
+          add_body_quantity(
+              quantity,
+              flux_term(complex_.volume_rule == films::VolumeRule::Column
+                            ? FieldFunction(column_field)
+                            : FieldFunction(cone_field)),
+              factor, functional, number);
           break;
         case films::FilmQuantity::Kind::BodyScalarIntegral:
-          add_body_quantity(quantity, body_field(quantity), factor, functional,
-                            number);
+          add_body_quantity(quantity, flux_term(body_field(quantity)), factor,
+                            functional, number);
+          break;
+        case films::FilmQuantity::Kind::BodyPoles:
+          add_body_quantity(quantity, pole_term(), factor, functional, number);
           break;
       }
     }
@@ -178,8 +183,8 @@ class FilmTermBuilder {
   }
 
   void add_body_quantity(const films::FilmQuantity& quantity,
-                         FieldFunction field, double factor, int functional,
-                         int number) {
+                         std::unique_ptr<FilmTerm> term, double factor,
+                         int functional, int number) {
     std::vector<FilmTerm::Element> elements;
     for (std::size_t b = 0; b < complex_.bodies.size(); ++b) {
       if (quantity.body < 0 || quantity.body == static_cast<int>(b)) {
@@ -187,7 +192,7 @@ class FilmTermBuilder {
         elements.insert(elements.end(), more.begin(), more.end());
       }
     }
-    add(flux_term(std::move(field)), std::move(elements), functional, number);
+    add(std::move(term), std::move(elements), functional, number);
   }
 
   std::map<Edge, std::vector<int>> facets_at_marked_edges() const {
@@ -347,6 +352,12 @@ films::FilmTargets targets_of(const films::FilmComplex& complex) {
     held.name = complex.quantities[q].name;
     held.volume = complex.quantities[q].target;
     targets.bodies.push_back(std::move(held));
+  }
+  for (const films::FilmQuantity& quantity : complex.quantities) {
+    targets.numbers.push_back(quantity.kind ==
+                                      films::FilmQuantity::Kind::BodyPoles
+                                  ? pole_numbers(quantity.poles)
+                                  : VectorX());
   }
   return targets;
 }

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "evolve/films/film_complex.h"
@@ -21,6 +22,9 @@ struct FacetJet {
 
 enum class JetOrder { Value = 0, Gradient = 1, Hessian = 2 };
 
+/// Of a field, those that follow the design (films::FilmTargets::numbers).
+using Numbers = std::span<const double>;
+
 class FilmTerm {
  public:
   virtual ~FilmTerm() = default;
@@ -36,10 +40,31 @@ class FilmTerm {
   int functional() const { return functional_; }
   int quantity() const { return quantity_; }  // index, or -1
 
+  using Corners = std::array<Vec3, 3>;
+  using Vector9 = Eigen::Matrix<double, 9, 1>;
+
   /// One element's share, sign included. Throws ExpressionError.
-  virtual FacetJet jet(const Element& element,
-                       const std::array<Vec3, 3>& corner,
-                       JetOrder order) const = 0;
+  virtual FacetJet jet(const Element& element, const Corners& corner,
+                       JetOrder order, Numbers numbers) const = 0;
+
+  /// True where its field has numbers. Its jets never throw then.
+  virtual bool has_numbers() const { return false; }
+  /// Adds factor x the derivative of motion . gradient by each number.
+  virtual void add_by_numbers(const Element& /*element*/,
+                              const Corners& /*corner*/,
+                              const Corners& /*motion*/, double /*factor*/,
+                              Numbers /*numbers*/, VectorX& /*sum*/) const {}
+  /// The same of the value itself.
+  virtual void add_value_by_numbers(const Element& /*element*/,
+                                    const Corners& /*corner*/,
+                                    double /*factor*/, Numbers /*numbers*/,
+                                    VectorX& /*sum*/) const {}
+  /// How fast the gradient changes as the numbers do.
+  virtual Vector9 gradient_rate(const Element& /*element*/,
+                                const Corners& /*corner*/, Numbers /*numbers*/,
+                                Numbers /*rates*/) const {
+    return Vector9::Zero();
+  }
 
  protected:
   std::vector<Element> elements_;

@@ -1,8 +1,8 @@
 #include "evolve/energy/radial_field.h"
 
-#include <cmath>
-#include <numbers>
+#include <vector>
 
+#include "core/math/gauss_rule.h"
 #include "evolve/energy/film_space.h"
 
 namespace meniscus::energy {
@@ -16,26 +16,12 @@ struct RayPoint {
   double weight;  // of phi(t), t^2 dt included
 };
 
-/// Gauss-Legendre in s on [0, 1] with t = s^2.
-std::array<RayPoint, kRayPoints> make_ray_rule() {
-  std::array<RayPoint, kRayPoints> rule;
-  for (int i = 0; i < kRayPoints; ++i) {
-    double x = std::cos(std::numbers::pi * (i + 0.75) / (kRayPoints + 0.5));
-    double slope = 1.0;
-    for (int step = 0; step < 10; ++step) {
-      double before = 1.0;
-      double legendre = x;
-      for (int k = 2; k <= kRayPoints; ++k) {
-        const double next = ((2 * k - 1) * x * legendre - (k - 1) * before) / k;
-        before = legendre;
-        legendre = next;
-      }
-      slope = kRayPoints * (x * legendre - before) / (x * x - 1.0);
-      x -= legendre / slope;
-    }
-    const double s = 0.5 * (1.0 + x);
-    const double t = s * s;
-    rule[i] = {t, t * t * 2.0 * s / ((1.0 - x * x) * slope * slope)};
+/// Gauss's points in s on [0, 1] with t = s^2.
+std::vector<RayPoint> make_ray_rule() {
+  std::vector<RayPoint> rule;
+  for (const GaussPoint& g : gauss_rule(kRayPoints)) {
+    const double t = g.at * g.at;
+    rule.push_back({t, t * t * 2.0 * g.at * g.weight});
   }
   return rule;
 }
@@ -44,7 +30,7 @@ std::array<RayPoint, kRayPoints> make_ray_rule() {
 
 FieldJet radial_field(const Expression& phi, const Vec3& origin,
                       const Vec3& at) {
-  static const std::array<RayPoint, kRayPoints> kRule = make_ray_rule();
+  static const std::vector<RayPoint> kRule = make_ray_rule();
   const Vec3 ray = at - origin;
   PlaceJet sum;
   for (const RayPoint& point : kRule) {

@@ -8,87 +8,18 @@
 
 #include <Eigen/Geometry>
 
-#include "core/math/dense.h"
+#include "core/math/gauss_rule.h"
 #include "evolve/energy/film_space.h"
+#include "evolve/energy/flux_jet.h"
 
 namespace meniscus::energy {
 
 namespace {
 
-using Vector9 = Eigen::Matrix<double, 9, 1>;
-using Matrix9 = Eigen::Matrix<double, 9, 9>;
-
-struct QuadraturePoint {
-  std::array<double, 3> weight_of;  // barycentric
-  double weight;                    // of the facet's area
-};
-
-/// Degree 5 on a triangle, seven points (Radon 1948).
-const std::array<QuadraturePoint, 7>& facet_rule() {
-  static const std::array<QuadraturePoint, 7> kRule = [] {
-    const double root = std::sqrt(15.0);
-    const double a = (6.0 - root) / 21.0;
-    const double b = (6.0 + root) / 21.0;
-    const double wa = (155.0 - root) / 1200.0;
-    const double wb = (155.0 + root) / 1200.0;
-    const double third = 1.0 / 3.0;
-    return std::array<QuadraturePoint, 7>{{{{third, third, third}, 9.0 / 40.0},
-                                           {{1 - 2 * a, a, a}, wa},
-                                           {{a, 1 - 2 * a, a}, wa},
-                                           {{a, a, 1 - 2 * a}, wa},
-                                           {{1 - 2 * b, b, b}, wb},
-                                           {{b, 1 - 2 * b, b}, wb},
-                                           {{b, b, 1 - 2 * b}, wb}}};
-  }();
-  return kRule;
+/// 1 to 8 points.
+std::vector<GaussPoint> edge_rule(int points) {
+  return gauss_rule(std::clamp(points, 1, 8));
 }
-
-/// Gauss points on [0, 1], 1 to 8 of them: place, weight.
-std::vector<std::array<double, 2>> edge_rule(int points) {
-  const int n = std::clamp(points, 1, 8);
-  // Golub, Welsch 1969: eigenvalues of the Jacobi matrix of Legendre's
-  // polynomials.
-  Eigen::MatrixXd jacobi = Eigen::MatrixXd::Zero(n, n);
-  for (int k = 1; k < n; ++k) {
-    jacobi(k, k - 1) = jacobi(k - 1, k) = k / std::sqrt(4.0 * k * k - 1.0);
-  }
-  const auto eigen = symmetric_eigen(jacobi);
-  std::vector<std::array<double, 2>> rule;
-  for (int k = 0; k < n; ++k) {
-    const double first = eigen.vectors(0, k);
-    rule.push_back({0.5 * (1.0 + eigen.values[k]), first * first});
-  }
-  return rule;
-}
-
-Eigen::Matrix3d cross_matrix(const Vec3& v) {
-  Eigen::Matrix3d m;
-  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return m;
-}
-
-/// N = (b - a) x (c - a), its derivative and its constant second derivative:
-/// dN/dx_i v = e_i x v.
-struct NormalJet {
-  Vec3 normal;
-  std::array<Eigen::Matrix3d, 3> slope;  // [e_i]x
-
-  explicit NormalJet(const std::array<Vec3, 3>& c) {
-    normal = (c[1] - c[0]).cross(c[2] - c[0]);
-    for (int i = 0; i < 3; ++i) {
-      slope[i] = cross_matrix(c[(i + 2) % 3] - c[(i + 1) % 3]);
-    }
-  }
-  /// Second derivative of f . N by x_i, x_j.
-  static Eigen::Matrix3d bend(const Vec3& f, int i, int j) {
-    if (i == j) {
-      return Eigen::Matrix3d::Zero();
-    }
-    // d2N(v_i, w_j) = +- w x v, + for j = i + 2; f.(w x v) = v.(f x w).
-    const Eigen::Matrix3d m = cross_matrix(f);
-    return j == (i + 2) % 3 ? m : Eigen::Matrix3d(-m);
-  }
-};
 
 /// Integral of F . n over facets.
 class FluxTerm : public FilmTerm {
@@ -96,46 +27,11 @@ class FluxTerm : public FilmTerm {
   explicit FluxTerm(FieldFunction field) : field_(std::move(field)) {}
 
   FacetJet jet(const Element& element, const std::array<Vec3, 3>& c,
-               JetOrder order) const override {
-    const NormalJet n(c);
-    FacetJet sum;
-    for (const QuadraturePoint& q : facet_rule()) {
-      const auto& l = q.weight_of;
-      const FieldJet f = field_(l[0] * c[0] + l[1] * c[1] + l[2] * c[2], order);
-      const double w = 0.5 * element.sign * q.weight;
-      sum.value += w * f.value.dot(n.normal);
-      if (order == JetOrder::Value) {
-        continue;
-      }
-      const Vec3 pull = f.slope.transpose() * n.normal;
-      for (int i = 0; i < 3; ++i) {
-        sum.gradient.segment<3>(3 * i) +=
-            w * (l[i] * pull + n.slope[i].transpose() * f.value);
-      }
-      if (order == JetOrder::Hessian) {
-        add_hessian(f, n, l, w, sum.hessian);
-      }
-    }
-    return sum;
+               JetOrder order, Numbers /*numbers*/) const override {
+    return flux_jet(element.sign, c, order, field_);
   }
 
  private:
-  static void add_hessian(const FieldJet& f, const NormalJet& n,
-                          const std::array<double, 3>& l, double w,
-                          Matrix9& sum) {
-    Eigen::Matrix3d bend = Eigen::Matrix3d::Zero();
-    for (int m = 0; m < 3; ++m) {
-      bend += n.normal[m] * f.bend[m];
-    }
-    for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < 3; ++j) {
-        sum.block<3, 3>(3 * i, 3 * j) +=
-            w * (l[i] * l[j] * bend + l[i] * f.slope.transpose() * n.slope[j] +
-                 l[j] * n.slope[i].transpose() * f.slope +
-                 NormalJet::bend(f.value, i, j));
-      }
-    }
-  }
   FieldFunction field_;
 };
 
@@ -145,7 +41,7 @@ class ScalarTerm : public FilmTerm {
   explicit ScalarTerm(Expression scalar) : scalar_(std::move(scalar)) {}
 
   FacetJet jet(const Element& element, const std::array<Vec3, 3>& c,
-               JetOrder order) const override {
+               JetOrder order, Numbers /*numbers*/) const override {
     const NormalJet n(c);
     const double size = n.normal.norm();
     FacetJet sum;
@@ -214,7 +110,7 @@ class LineTerm : public FilmTerm {
       : field_(std::move(field)), rule_(edge_rule(points)) {}
 
   FacetJet jet(const Element& element, const std::array<Vec3, 3>& c,
-               JetOrder order) const override {
+               JetOrder order, Numbers /*numbers*/) const override {
     const int a = element.first;
     const int b = (a + 1) % 3;
     const Vec3 way = c[b] - c[a];
@@ -249,7 +145,7 @@ class LineTerm : public FilmTerm {
 
  private:
   FieldFunction field_;
-  std::vector<std::array<double, 2>> rule_;
+  std::vector<GaussPoint> rule_;
 };
 
 /// Area between edges and the convex wall that they are chords of:
@@ -261,7 +157,7 @@ class GapTerm : public FilmTerm {
       : formula_(std::move(formula)), constant_(constant) {}
 
   FacetJet jet(const Element& element, const std::array<Vec3, 3>& c,
-               JetOrder order) const override {
+               JetOrder order, Numbers /*numbers*/) const override {
     FacetJet sum = first_order(element, c);
     if (order == JetOrder::Hessian) {
       const double step = 1e-5 * (c[1] - c[0]).norm();

@@ -15,6 +15,7 @@
 #include "evolve/films/bent_wall.h"
 #include "evolve/films/film_system.h"
 #include "evolve/films/ruled_band.h"
+#include "evolve/films/spine_spec.h"
 
 namespace meniscus::films {
 
@@ -138,7 +139,8 @@ struct FilmQuantity {
     BodyVolume,      // volume of `body`, or of all when -1
     // Integral of scalar over `body`, or over all when -1, which facets close:
     // where they do not, cones to `origin` do.
-    BodyScalarIntegral
+    BodyScalarIntegral,
+    BodyPoles  // energy of `poles` per volume of `body`, which facets close
   };
   std::string name;
   Role role = Role::Info;
@@ -146,6 +148,7 @@ struct FilmQuantity {
   VectorField field;           // VectorIntegral
   Expression scalar;           // ScalarIntegral, BodyScalarIntegral
   Vec3 origin = Vec3::Zero();  // BodyScalarIntegral: the scalar's pole if any
+  std::vector<Pole> poles;     // BodyPoles: of the spines of `body`, in order
   double modulus = 1.0;        // Energy
   double target = 0.0;         // Held
   std::vector<int> surfaces;   // empty: every facet
@@ -181,7 +184,8 @@ struct FilmComplex {
   std::vector<LineIntegral> integrals;
   std::vector<std::vector<int>> integral_sets;  // of indices of integrals
   std::vector<FilmQuantity> quantities;
-  Vec3 gravity = Vec3::Zero();  // acceleration [length/time^2]
+  std::vector<SpineSampling> spines;  // of the poles
+  Vec3 gravity = Vec3::Zero();        // acceleration [length/time^2]
   VolumeRule volume_rule = VolumeRule::Cone;
   int line_points = 5;  // Gauss points of line integrals, per edge
   // Energy of free marked edges S on convex level sets, for the area between

@@ -4,6 +4,7 @@
 /// numbers do.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,6 +15,7 @@
 #include "evolve/curves/curve.h"
 #include "evolve/films/bent_wall.h"
 #include "evolve/films/field_spec.h"
+#include "evolve/films/spine_spec.h"
 
 namespace meniscus::films {
 
@@ -21,6 +23,7 @@ enum class FilmKind {
   Branch,  // convex hull of any number of closed curves, less their caps
   Loft,    // band between two closed curves
   Disk,    // start across one closed curve, around others within it
+  Spines,  // around the spines of its body, to any number of closed curves
   Facets   // given, its rims on any number of curves
 };
 
@@ -134,6 +137,11 @@ struct BodySpec {
   std::optional<double> volume;    // [length^3]
   std::optional<double> pressure;  // inside minus outside [force/length^2]
   bool is_void = false;            // of no material: not part of what is meshed
+
+  bool is_enclosed_by(const std::string& surface) const {
+    return std::find(enclosed_by.begin(), enclosed_by.end(), surface) !=
+           enclosed_by.end();
+  }
 };
 
 /// The arc of a ball in the corner along a curve where a film meets another
@@ -154,6 +162,7 @@ struct FilmSystem {
   // Field energies; like tension fields, the same for every design of a model.
   std::vector<FieldSpec> fields;
   std::vector<PressureSpec> pressures;
+  std::vector<SpineSpec> spines;
   std::vector<FilletSpec> fillets;
   /// Facets that are given are the film's own: halved until they are as small
   /// as its edge, never remeshed.

@@ -13,6 +13,9 @@ struct FilmTargets {
   std::vector<double> tension;      // one per surface [force/length]; caps 0
   std::vector<ComplexBody> bodies;  // volume or pressure asked; after them one
                                     // per held quantity, its target as volume
+  /// Per quantity the numbers of its field that follow the design
+  /// (evolve/energy/pole_field.h); empty: none.
+  std::vector<VectorX> numbers;
 };
 
 /// Forces of a film are measured by it [force/length]; 0 without surfaces.

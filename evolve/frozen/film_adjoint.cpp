@@ -126,6 +126,10 @@ FilmAdjoint::Result FilmAdjoint::transpose(const FilmCovector& response) const {
                              ? result.tensions[s] + entry(response.tensions, s)
                              : 0.0;
   }
+  result.numbers = products_.number_slopes(points_, motion, response.energy);
+  for (std::size_t q = 0; q < response.numbers.size(); ++q) {
+    result.numbers[q] += response.numbers[q];
+  }
   // N_i = h_i G_i + mu_i (E_x - sum p V_x)_i by the directions, carried on to
   // the base points that make them.
   Points by_first = response.directions;  // by dx/dh
@@ -175,6 +179,7 @@ Points FilmAdjoint::tangent(const Rates& rates) const {
   if (!tensions.isZero(0.0)) {
     add(1.0, energy_.area_gradient(points_, tensions), slope_rate);
   }
+  add(1.0, products_.number_motion(points_, rates.numbers), slope_rate);
   const std::vector<int>& held = saddle_.held();
   VectorX missing = VectorX::Zero(saddle_.constraints().cols());
   for (std::size_t k = 0; k < held.size(); ++k) {

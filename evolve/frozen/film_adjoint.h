@@ -24,10 +24,11 @@ class FilmAdjoint {
               const VectorX& heights, const VectorX& pressure);
 
   struct Result {
-    Points base;        // dJ/dX, one per vertex
-    VectorX tensions;   // one per surface
-    VectorX volumes;    // one per functional, 0 where none is held
-    VectorX pressures;  // one per functional, 0 where it is held
+    Points base;                   // dJ/dX, one per vertex
+    VectorX tensions;              // one per surface
+    VectorX volumes;               // one per functional, 0 where none is held
+    VectorX pressures;             // one per functional, 0 where it is held
+    std::vector<VectorX> numbers;  // of the fields, per quantity
   };
   /// Lists of `response` that are not empty must fit.
   Result transpose(const FilmCovector& response) const;
@@ -38,6 +39,7 @@ class FilmAdjoint {
     VectorX tensions;   // one per surface; not read where a field is
     VectorX volumes;    // one per functional; read where one is held
     VectorX pressures;  // one per functional; read where none is held
+    std::vector<VectorX> numbers = {};  // of the fields, per quantity
   };
   /// dx, one per vertex: the other way through the same system, so that
   /// transpose() of it is transpose().

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "evolve/energy/pole_field.h"
 #include "evolve/frozen/film_adjoint.h"
 #include "evolve/frozen/film_margin.h"
 #include "evolve/frozen/film_model_impl.h"
@@ -59,6 +60,7 @@ void FilmModel::Impl::check_response(const FilmCovector& response) const {
   check_size("tensions", size(response.tensions), complex.surfaces.size());
   check_size("directions", response.directions.size(),
              static_cast<std::size_t>(energy->unknowns()));
+  check_size("numbers", response.numbers.size(), complex.quantities.size());
   check_size("bends", response.bends.size(),
              static_cast<std::size_t>(energy->unknowns()));
 }
@@ -131,7 +133,7 @@ std::vector<FilmGradient> FilmModel::transpose(
     impl_->carry->fold_caps(state.points, response.points);
     const FilmAdjoint::Result found = adjoint.transpose(response);
     result.push_back({impl_->rim_gradients(found.base), found.tensions,
-                      found.volumes, found.pressures});
+                      found.volumes, found.pressures, found.numbers});
   }
   return result;
 }
@@ -200,6 +202,14 @@ FilmAdjoint::Rates FilmModel::Impl::rates_of(
           wall_tension(rates, complex.surfaces[s].name);
     }
   }
+  // Poles follow their spines.
+  for (std::size_t q = 0; q < complex.quantities.size(); ++q) {
+    result.numbers.emplace_back();
+    if (complex.quantities[q].kind == films::FilmQuantity::Kind::BodyPoles) {
+      result.numbers.back() =
+          energy::pole_rate_numbers(pole_rates(system, rates, q));
+    }
+  }
   for (Eigen::Index b = 0; b < bodies; ++b) {
     const films::BodySpec* body = find_named(
         rates.bodies, complex.bodies[static_cast<std::size_t>(b)].name);
@@ -233,6 +243,12 @@ double FilmModel::rate(const FilmGradient& gradient,
     } else if (impl_->complex.surfaces[s].wetted) {
       sum += gradient.tensions[static_cast<Eigen::Index>(s)] *
              wall_tension(rates, impl_->complex.surfaces[s].name);
+    }
+  }
+  for (std::size_t q = 0; q < gradient.numbers.size(); ++q) {
+    if (gradient.numbers[q].size() > 0) {
+      sum += gradient.numbers[q].dot(
+          energy::pole_rate_numbers(impl_->pole_rates(system, rates, q)));
     }
   }
   for (std::size_t b = 0; b < impl_->complex.bodies.size(); ++b) {

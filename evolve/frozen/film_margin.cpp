@@ -64,6 +64,7 @@ class EigenvalueSlope {
       by.directions[i] += 2.0 * weight * v[i] * pull[energy_.vertices()[i]];
     }
     by.tensions += weight * products_.area_curvatures(points_, motion);
+    add_numbers(products_.number_curvatures(points_, motion), weight, by);
     add_bends(v, weight, by);
   }
 
@@ -85,6 +86,19 @@ class EigenvalueSlope {
           weight * flat(saddle_.functional_slopes()[b]).dot(flat(bend));
     }
     by.tensions += weight * products_.area_rates(points_, bend);
+    add_numbers(products_.number_slopes(points_, bend, 0.0), weight, by);
+  }
+
+  static void add_numbers(const std::vector<VectorX>& more, double weight,
+                          FilmCovector& by) {
+    by.numbers.resize(more.size());
+    for (std::size_t q = 0; q < more.size(); ++q) {
+      if (by.numbers[q].size() == 0) {
+        by.numbers[q] = weight * more[q];
+      } else {
+        by.numbers[q] += weight * more[q];
+      }
+    }
   }
 
   /// kappa, one per functional: 0 where none is held.

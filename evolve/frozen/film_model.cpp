@@ -10,6 +10,7 @@
 #include "core/heed_stop.h"
 #include "core/timer.h"
 #include "evolve/energy/fields.h"
+#include "evolve/energy/pole_field.h"
 #include "evolve/energy/tension_field.h"
 #include "evolve/films/rim_grading.h"
 #include "evolve/films/solid_facets.h"
@@ -17,6 +18,7 @@
 #include "evolve/groom/slivers.h"
 #include "evolve/settle/equilibrium.h"
 #include "evolve/settle/find_equilibrium.h"
+#include "evolve/spines/spine_poles.h"
 #include "evolve/start/start_complex.h"
 #include "evolve/start/start_edge.h"
 #include "evolve/start/wetted_faces.h"
@@ -39,6 +41,9 @@ films::FilmTargets blend(const films::FilmTargets& from,
   const auto mix = [t](double a, double b) { return a + t * (b - a); };
   for (std::size_t s = 0; s < to.tension.size(); ++s) {
     result.tension[s] = mix(from.tension[s], to.tension[s]);
+  }
+  for (std::size_t q = 0; q < to.numbers.size(); ++q) {
+    result.numbers[q] = from.numbers[q] + t * (to.numbers[q] - from.numbers[q]);
   }
   for (std::size_t b = 0; b < to.bodies.size(); ++b) {
     if (to.bodies[b].volume && from.bodies[b].volume) {
@@ -102,6 +107,18 @@ void check_numbers(const films::FilmSystem& system) {
   }
 }
 
+const films::SpineSpec& spine_named(const films::FilmSystem& system,
+                                    const std::string& name) {
+  const auto spine =
+      std::find_if(system.spines.begin(), system.spines.end(),
+                   [&](const films::SpineSpec& s) { return s.name == name; });
+  if (spine == system.spines.end()) {
+    throw InvalidInput(
+        fmt::format("the design has no spine '{}', which its model has", name));
+  }
+  return *spine;
+}
+
 std::string no_value(const ExpressionError& error) {
   return fmt::format(
       "a field, or a tension (it must be above 0), has no value where the film "
@@ -144,6 +161,11 @@ films::FilmTargets FilmModel::Impl::targets_of_system(
     }
   }
   check_fields(system);
+  for (std::size_t q = 0; q < complex.quantities.size(); ++q) {
+    if (complex.quantities[q].kind == films::FilmQuantity::Kind::BodyPoles) {
+      result.numbers[q] = energy::pole_numbers(poles_of(system, q));
+    }
+  }
   for (films::ComplexBody& body : result.bodies) {
     const auto spec = std::find_if(
         system.bodies.begin(), system.bodies.end(),
@@ -193,9 +215,14 @@ void FilmModel::Impl::check_fields(const films::FilmSystem& system) const {
   for (const films::PressureSpec& spec : system.pressures) {
     formulas.push_back(spec.pressure.text());
   }
+  // Poles of spines come after them.
+  const auto poles =
+      std::find_if(complex.quantities.begin(), complex.quantities.end(),
+                   [](const films::FilmQuantity& q) {
+                     return q.kind == films::FilmQuantity::Kind::BodyPoles;
+                   });
   const bool same = std::equal(
-      formulas.begin(), formulas.end(), complex.quantities.begin(),
-      complex.quantities.end(),
+      formulas.begin(), formulas.end(), complex.quantities.begin(), poles,
       [](const std::string& formula, const films::FilmQuantity& quantity) {
         return formula == quantity.scalar.text();
       });
@@ -204,6 +231,35 @@ void FilmModel::Impl::check_fields(const films::FilmSystem& system) const {
         "the design changes the field energies; they belong to the frozen "
         "model: freeze another one");
   }
+}
+
+std::vector<films::Pole> FilmModel::Impl::poles_of(
+    const films::FilmSystem& system, std::size_t quantity) const {
+  std::vector<films::Pole> poles;
+  for (const films::SpineSampling& spine : complex.spines) {
+    if (spine.body != complex.quantities[quantity].body) {
+      continue;
+    }
+    const std::vector<films::Pole> more =
+        spines::poles_of(spine, spine_named(system, spine.name));
+    poles.insert(poles.end(), more.begin(), more.end());
+  }
+  return poles;
+}
+
+std::vector<films::Pole> FilmModel::Impl::pole_rates(
+    const films::FilmSystem& system, const films::FilmSystem& rates,
+    std::size_t quantity) const {
+  std::vector<films::Pole> poles;
+  for (const films::SpineSampling& spine : complex.spines) {
+    if (spine.body != complex.quantities[quantity].body) {
+      continue;
+    }
+    const std::vector<films::Pole> more = spines::pole_rates(
+        spine, spine_named(system, spine.name), spine_named(rates, spine.name));
+    poles.insert(poles.end(), more.begin(), more.end());
+  }
+  return poles;
 }
 
 std::vector<curves::Curve> FilmModel::Impl::curves_of_system(
@@ -622,6 +678,11 @@ films::FilmComplex FilmModel::Impl::at_design(
   for (std::size_t b = 0; b < at.bodies.size(); ++b) {
     at.bodies[b].volume = goal.bodies[b].volume;
     at.bodies[b].pressure = goal.bodies[b].pressure;
+  }
+  for (std::size_t q = 0; q < at.quantities.size(); ++q) {
+    if (at.quantities[q].kind == films::FilmQuantity::Kind::BodyPoles) {
+      at.quantities[q].poles = poles_of(system, q);
+    }
   }
   return at;
 }

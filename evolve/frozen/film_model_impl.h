@@ -43,6 +43,12 @@ struct FilmModel::Impl {
   const films::FilmWall& wall_of(const films::FilmSystem& system,
                                  int surface) const;
   void check_fields(const films::FilmSystem& system) const;
+  /// The poles of one of its quantities, of the spines of a design.
+  std::vector<films::Pole> poles_of(const films::FilmSystem& system,
+                                    std::size_t quantity) const;
+  std::vector<films::Pole> pole_rates(const films::FilmSystem& system,
+                                      const films::FilmSystem& rates,
+                                      std::size_t quantity) const;
   std::vector<curves::Curve> curves_of_system(
       const films::FilmSystem& system) const;
   void find_reference(const films::FilmSystem& initial,

@@ -13,8 +13,8 @@
 #include "core/error.h"
 #include "core/geometry/plane_points.h"
 #include "core/heed_stop.h"
+#include "evolve/films/loft.h"
 #include "evolve/groom/surface_editor.h"
-#include "evolve/start/loft.h"
 
 namespace meniscus::start {
 
@@ -272,14 +272,6 @@ SurfaceMesh remeshed(const Points& points, std::vector<Triangle> facets,
 
 }  // namespace
 
-Vec3 polygon_area_vector(const Points& rim) {
-  Vec3 sum = Vec3::Zero();
-  for (std::size_t i = 1; i + 1 < rim.size(); ++i) {
-    sum += (rim[i] - rim[0]).cross(rim[i + 1] - rim[0]);
-  }
-  return 0.5 * sum;
-}
-
 SurfaceMesh fill_disk(const Points& rim, double edge,
                       const std::function<double(const Vec3&)>& edge_field) {
   return fill_disk(rim, {}, edge, edge_field);
@@ -314,7 +306,7 @@ SurfaceMesh fill_ring(const Points& outer, const Points& inner, double edge) {
   Points rims = outer;
   rims.insert(rims.end(), inner.begin(), inner.end());
   return remeshed(
-      rims, loft_band(outer, inner),
+      rims, films::loft_band(outer, inner),
       {.edge = std::min({edge, mean_piece(outer), mean_piece(inner)})});
 }
 

@@ -7,10 +7,6 @@
 
 namespace meniscus::start {
 
-/// Newell's area vector of a closed polygon: its area times its normal,
-/// counter-clockwise seen from the tip; of the shadow when not planar.
-Vec3 polygon_area_vector(const Points& rim);
-
 /// Isotropic triangles of about `edge` inside the simple polygon `rim`
 /// (planar, or one whose shadow along its area vector is simple): the rim
 /// points come first with their numbers, no other lies on the rim, and facets

@@ -15,8 +15,10 @@
 #include "evolve/energy/tension_field.h"
 #include "evolve/films/body_sides.h"
 #include "evolve/films/edge_marks.h"
+#include "evolve/films/loft.h"
 #include "evolve/films/rim_grading.h"
 #include "evolve/films/shared_sides.h"
+#include "evolve/spines/spine_start.h"
 #include "evolve/start/band_rows.h"
 #include "evolve/start/branch_facets.h"
 #include "evolve/start/cap_faces.h"
@@ -25,7 +27,6 @@
 #include "evolve/start/disk_fill.h"
 #include "evolve/start/facet_start.h"
 #include "evolve/start/fill_patch.h"
-#include "evolve/start/loft.h"
 #include "evolve/start/raise_disks.h"
 #include "evolve/start/solid_start.h"
 #include "evolve/start/wetted_faces.h"
@@ -268,6 +269,9 @@ class StartBuilder {
       case films::FilmKind::Facets:
         add_sheet(film.name, label, films::VertexKind::Free);
         break;
+      case films::FilmKind::Spines:
+        add_spined(film, label);
+        break;
     }
   }
 
@@ -292,12 +296,64 @@ class StartBuilder {
     require_curves(film, 2);
     const Rim low = rim_of(film.curves[0], film.name);
     const Rim high = rim_of(film.curves[1], film.name);
-    for (Triangle t : loft_band(points_of(low), points_of(high))) {
+    for (Triangle t : films::loft_band(points_of(low), points_of(high))) {
       for (int& v : t) {
         v = v < low.count() ? low.ids[v] : high.ids[v - low.count()];
       }
       add_facet(t, label);
     }
+  }
+
+  /// Around the spines of its body.
+  void add_spined(const films::FilmSpec& film, int label) {
+    std::vector<films::SpineSpec> own;
+    for (const films::BodySpec& body : system_.bodies) {
+      for (const films::SpineSpec& spine : system_.spines) {
+        if (spine.body == body.name && body.is_enclosed_by(film.name)) {
+          own.push_back(spine);
+        }
+      }
+    }
+    if (own.empty()) {
+      throw InvalidInput(fmt::format(
+          "film '{}' starts from spines, but its body has none: give one of "
+          "[spines.NAME] that body",
+          film.name));
+    }
+    std::vector<Rim> rims;
+    for (const std::string& name : film.curves) {
+      rims.push_back(rim_of(name, film.name));
+    }
+    add_filling(
+        spines::spine_start(own, spine_rims(film), bores_of(film), film.name),
+        rims, label, films::VertexKind::Free);
+  }
+
+  /// Rings between two of the film's rims.
+  std::vector<spines::Bore> bores_of(const films::FilmSpec& film) const {
+    const auto number = [&](const std::string& curve) {
+      const auto at = std::find(film.curves.begin(), film.curves.end(), curve);
+      return at == film.curves.end()
+                 ? -1
+                 : static_cast<int>(at - film.curves.begin());
+    };
+    std::vector<spines::Bore> bores;
+    for (const films::CapSpec& cap : system_.caps) {
+      const spines::Bore bore = {number(cap.curve), number(cap.inner)};
+      if (!cap.inner.empty() && bore[0] >= 0 && bore[1] >= 0) {
+        bores.push_back(bore);
+      }
+    }
+    return bores;
+  }
+
+  /// Those that a film ends at, as they begin.
+  std::vector<spines::SpineRim> spine_rims(const films::FilmSpec& film) {
+    std::vector<spines::SpineRim> rims;
+    for (const std::string& name : film.curves) {
+      rims.push_back({name, points_of(rim_of(name, film.name))});
+    }
+    return rims;
   }
 
   /// The first of the rims filled, the others left open.
@@ -541,6 +597,40 @@ class StartBuilder {
     for (const films::PressureSpec& spec : system_.pressures) {
       result_.quantities.push_back(energy::pressure_quantity(
           result_, spec.name, spec.body, spec.pressure));
+    }
+    for (std::size_t b = 0; b < result_.bodies.size(); ++b) {
+      add_spines(static_cast<int>(b));
+    }
+  }
+
+  /// The poles of a body's spines, which go on beyond the rims of its films.
+  void add_spines(int body) {
+    const std::string& name = result_.bodies[body].name;
+    std::vector<spines::SpineRim> rims;
+    for (const films::FilmSpec& film : system_.films) {
+      if (system_.bodies[body].is_enclosed_by(film.name)) {
+        const std::vector<spines::SpineRim> more = spine_rims(film);
+        rims.insert(rims.end(), more.begin(), more.end());
+      }
+    }
+    films::FilmQuantity poles{fmt::format("spines of {}", name),
+                              films::FilmQuantity::Role::Energy,
+                              films::FilmQuantity::Kind::BodyPoles};
+    poles.body = body;
+    poles.modulus = -1.0;
+    for (const films::SpineSpec& spine : system_.spines) {
+      if (spine.body != name) {
+        continue;
+      }
+      const std::array<int, 2> at = spines::rims_at_ends(spine, rims);
+      result_.spines.push_back(
+          spines::sample_spine(spine, body, {at[0] >= 0, at[1] >= 0}));
+      const std::vector<films::Pole> more =
+          spines::poles_of(result_.spines.back(), spine);
+      poles.poles.insert(poles.poles.end(), more.begin(), more.end());
+    }
+    if (!poles.poles.empty()) {
+      result_.quantities.push_back(std::move(poles));
     }
   }
 

@@ -1,6 +1,7 @@
 /// How much coarser than its settled film a model's start is.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "evolve/films/film_system.h"
@@ -17,7 +18,13 @@ inline int start_halvings(const films::FilmSystem& system, double edge) {
     return std::max(0, static_cast<int>(std::lround(
                            std::log2(mean_facet_edge(system) / edge))));
   }
-  return films::halving_is_too_fine(system, edge) ? 0 : 1;
+  // Arms around spines need some facets about them.
+  const bool thin = std::any_of(
+      system.spines.begin(), system.spines.end(), [&](const auto& spine) {
+        return std::any_of(spine.radii.begin(), spine.radii.end(),
+                           [&](double radius) { return radius < 2.0 * edge; });
+      });
+  return thin || films::halving_is_too_fine(system, edge) ? 0 : 1;
 }
 
 /// The edge length that such a film's start is built at.

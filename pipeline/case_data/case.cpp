@@ -134,6 +134,21 @@ void add_field(const Case& input, const FieldEntry& field,
   system.fields.push_back(std::move(spec));
 }
 
+void add_spine(const SpineEntry& spine, const CaseValues& values,
+               films::FilmSystem& system) {
+  films::SpineSpec spec{
+      .name = spine.name, .body = spine.body, .smooth = spine.smooth};
+  for (std::size_t k = 0; k < spine.points.size(); ++k) {
+    spec.points.push_back(values.at(spine.points[k]));
+    spec.radii.push_back(
+        spine.radii.empty()
+            ? 0.0
+            : values.positive(spine.radii[spine.radii.size() > 1 ? k : 0]));
+  }
+  spec.tension = values.positive(spine.tension);
+  system.spines.push_back(std::move(spec));
+}
+
 std::shared_ptr<const films::StartFacets> start_of(const FilmEntry& film,
                                                    const CaseValues& values) {
   auto start = std::make_shared<films::StartFacets>();
@@ -206,6 +221,9 @@ films::FilmSystem films_of(const Case& input, const CaseValues& values) {
   }
   for (const FieldEntry& field : input.fields) {
     add_field(input, field, values, system);
+  }
+  for (const SpineEntry& spine : input.spines) {
+    add_spine(spine, values, system);
   }
   for (const FilletEntry& fillet : input.fillets) {
     add_fillets(fillet, values, system);

@@ -50,6 +50,7 @@ struct Case {
   std::vector<FilletEntry> fillets;
   std::vector<WallEntry> walls;
   std::vector<FieldEntry> fields;
+  std::vector<SpineEntry> spines;
   std::vector<MaterialEntry> materials;
   std::vector<LoadCaseEntry> load_cases;
   std::vector<DirectionsEntry> directions;  // of load cases, in their order

@@ -28,7 +28,10 @@ void check_liquid(const Case& input, CaseProblems& problems) {
                                       return field.kind == FieldKind::Pressure;
                                     });
   for (const BodyEntry& body : input.bodies) {
-    if (inflated || body.volume || body.pressure) {
+    const bool held = std::any_of(
+        input.spines.begin(), input.spines.end(),
+        [&](const SpineEntry& spine) { return spine.body == body.name; });
+    if (inflated || held || body.volume || body.pressure) {
       continue;
     }
     const auto film = std::find_if(

@@ -206,6 +206,7 @@ bool names_are_known(const Case& input, const BodyEntry& body) {
       [&](const std::string& name) { return is_among(surfaces, name); });
   for (const FilmEntry& film : input.films) {
     known = known && (film.spec.kind == films::FilmKind::Facets ||
+                      film.spec.kind == films::FilmKind::Spines ||
                       !film.spec.curves.empty());
   }
   for (const CapEntry& cap : input.caps) {

@@ -43,6 +43,9 @@ SourceLine line_of_start(const Case& input, const std::string& message) {
     const std::size_t found = message.find("'" + name + "'");
     line = line == 0 && found != std::string::npos ? at : line;
   };
+  for (const SpineEntry& spine : input.spines) {
+    look(spine.name, spine.line);
+  }
   for (const FilmEntry& film : input.films) {
     look(film.spec.name, film.line);
   }
@@ -128,7 +131,7 @@ void check_overlaps(const Case& input, const SurfaceMesh& start,
 
 void check_start(const Case& input, const EvaluatedCase& inputs,
                  CaseProblems& problems) {
-  if (!has_facets(input) && input.features.empty()) {
+  if (!has_facets(input) && input.features.empty() && input.spines.empty()) {
     return;
   }
   try {

@@ -198,7 +198,7 @@ bool share_plane(const curves::CurveShape& one,
   constexpr double kOffPlane = 1e-6;  // of the size
   const Points a = rim_places(one);
   const Points b = rim_places(other);
-  const Vec3 normal = start::polygon_area_vector(a).normalized();
+  const Vec3 normal = polygon_area_vector(a).normalized();
   const double off = kOffPlane * (bounding_diagonal(a) + bounding_diagonal(b));
   const auto lies = [&](const Vec3& p) {
     return std::abs(normal.dot(p - a[0])) <= off;
@@ -277,7 +277,7 @@ enum class Nesting { Beside, Within, Around };
 
 /// Does the loop wind around the point, both in a plane?
 bool winds_around(const Points& loop, const Vec3& at) {
-  const Vec3 normal = start::polygon_area_vector(loop).normalized();
+  const Vec3 normal = polygon_area_vector(loop).normalized();
   double turned = 0.0;
   for (std::size_t k = 0; k < loop.size(); ++k) {
     const Vec3 from = loop[k] - at;

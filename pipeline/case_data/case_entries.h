@@ -225,6 +225,16 @@ struct FieldEntry {
   SourceLine line = 0;
 };
 
+struct SpineEntry {
+  std::string name;
+  std::string body;
+  std::vector<QuantityVector> points;
+  bool smooth = true;
+  std::vector<Quantity> radii;  // one, or one per point
+  Quantity tension;
+  SourceLine line = 0;
+};
+
 struct MaterialEntry {
   std::string name;
   Quantity youngs_modulus, poisson_ratio, density;

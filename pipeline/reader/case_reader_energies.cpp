@@ -100,7 +100,116 @@ void require_frozen_field(CaseContext& context,
   }
 }
 
+struct SpineCurveRow {
+  const char* name;
+  bool value;  // is it smooth?
+};
+
+const std::vector<SpineCurveRow>& spine_curves() {
+  static const std::vector<SpineCurveRow> kinds = {{"spline", true},
+                                                   {"polyline", false}};
+  return kinds;
+}
+
+/// The body that a spine holds: the only one when it names none.
+std::string body_of_spine(CaseContext& context, const CaseTable& table,
+                          const case_data::Case& result) {
+  const std::vector<std::string> known = case_data::body_names(result);
+  const auto body = table.text("body");
+  if (!body && known.size() != 1) {
+    context.problems.add(
+        table.line(),
+        fmt::format("{} has no body, and the case has {}; expected body = the "
+                    "one whose liquid it holds",
+                    table.path(), known.size()));
+  }
+  if (body && std::find(known.begin(), known.end(), *body) == known.end()) {
+    context.problems.unknown(table.line("body"), "body", *body, known);
+  }
+  return body ? *body : known.size() == 1 ? known.front() : "";
+}
+
+/// That of the first film around the body.
+case_data::Quantity tension_of_spine(CaseContext& context,
+                                     const CaseTable& table,
+                                     const case_data::Case& result,
+                                     const std::string& body) {
+  if (const auto own = table.quantity("tension")) {
+    return *own;
+  }
+  for (const case_data::BodyEntry& entry : result.bodies) {
+    for (const case_data::FilmEntry& film : result.films) {
+      const bool around =
+          entry.name == body &&
+          std::find(entry.enclosed_by.begin(), entry.enclosed_by.end(),
+                    film.spec.name) != entry.enclosed_by.end();
+      if (around && !film.tension.of_place) {
+        return film.tension.quantity;
+      }
+    }
+  }
+  if (!body.empty()) {
+    context.problems.add(
+        table.line(),
+        fmt::format("{} does not know the tension that it holds against: no "
+                    "film around body '{}' has one that is a number; expected "
+                    "tension = a number",
+                    table.path(), body));
+  }
+  return {.expression = Expression(1.0), .line = table.line()};
+}
+
 }  // namespace
+
+TableSpec spine_table() {
+  using D = Dimension;
+  using K = KeyType;
+  return {
+      "spines",
+      true,
+      TableNeed::Optional,
+      "A line along which a body's liquid is held as an arm, of any length",
+      {{"points", K::Vectors, D::Length, true,
+        "along it, from one end to the other, two or more"},
+       {"kind", K::Choice, D::None, false,
+        "through the points: a smooth curve, or straight pieces; spline when "
+        "left out",
+        case_data::choices_of(spine_curves())},
+       {"radius", K::Quantities, D::Length, true,
+        "of the arm, above 0; an array gives that at each point"},
+       {"body", K::Name, D::None, false,
+        "whose liquid it holds; the only one when left out"},
+       {"tension", K::Quantity, D::Tension, false,
+        "that it holds against; that of the body's film when left out"}}};
+}
+
+void read_spines(CaseContext& context, const toml::table& root,
+                 case_data::Case& result) {
+  for (const CaseTable& table : named_tables(context, root, "spines")) {
+    case_data::SpineEntry spine{.name = table.name(), .line = table.line()};
+    spine.points = table.vectors("points");
+    spine.smooth = case_data::row_named(spine_curves(),
+                                        table.choice("kind").value_or("spline"))
+                       .value;
+    spine.radii = table.quantities("radius");
+    if (table.has("points") && spine.points.size() < 2) {
+      context.problems.add(table.line("points"),
+                           fmt::format("{}.points has {}; expected two or more",
+                                       table.path(), spine.points.size()));
+    }
+    if (spine.radii.size() > 1 && spine.radii.size() != spine.points.size()) {
+      context.problems.add(
+          table.line("radius"),
+          fmt::format("{}.radius has {} for {} points; expected one, or as "
+                      "many as points",
+                      table.path(), spine.radii.size(), spine.points.size()));
+      spine.radii.resize(1);
+    }
+    spine.body = body_of_spine(context, table, result);
+    spine.tension = tension_of_spine(context, table, result, spine.body);
+    result.spines.push_back(std::move(spine));
+  }
+}
 
 TableSpec field_table() {
   using D = Dimension;

@@ -243,6 +243,25 @@ std::optional<case_data::Quantity> CaseTable::quantity(const char* key) const {
                        fmt::format("{}.{}", path_, key));
 }
 
+std::vector<case_data::Quantity> CaseTable::quantities(const char* key) const {
+  const toml::array* array = has(key) ? node(key)->as_array() : nullptr;
+  std::vector<case_data::Quantity> result;
+  if (array == nullptr) {
+    if (auto one = quantity(key)) {
+      result.push_back(std::move(*one));
+    }
+    return result;
+  }
+  const IndexScope scope(*context_, indices_);
+  for (std::size_t k = 0; k < array->size(); ++k) {
+    if (auto one = read_quantity(*context_, (*array)[k], dimension(key),
+                                 fmt::format("{}.{}[{}]", path_, key, k + 1))) {
+      result.push_back(std::move(*one));
+    }
+  }
+  return result;
+}
+
 std::optional<case_data::PlaceQuantity> CaseTable::place_quantity(
     const char* key) const {
   if (!has(key)) {

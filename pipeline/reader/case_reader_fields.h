@@ -92,6 +92,8 @@ class CaseTable {
   std::optional<int> positive_integer(const char* key) const;
   std::optional<int> integer_within(const char* key, int least, int most) const;
   std::optional<case_data::Quantity> quantity(const char* key) const;
+  /// One or several.
+  std::vector<case_data::Quantity> quantities(const char* key) const;
   std::optional<case_data::PlaceQuantity> place_quantity(const char* key) const;
   std::optional<double> constant(const char* key) const;
   /// Of that dimension, whatever the vocabulary says.

@@ -511,6 +511,7 @@ void read_tables(const toml::table& root, const OverriddenNodes& overridden,
   read_walls(context, root, result);
   read_fillets(context, root, result);
   read_fields(context, root, result);
+  read_spines(context, root, result);
   read_resolution(context, root, result);
   read_process(context, root, result);
   read_analysis(context, root, result);

@@ -108,12 +108,15 @@ void read_solids(CaseContext& context, const std::vector<CaseTable>& solids,
 void read_geometry(CaseContext& context, const toml::table& root,
                    case_data::Case& result);
 
-/// Walls, fillets and field energies; after the geometry, fillets after walls.
+/// Walls, fillets, field energies and spines; after the geometry, fillets after
+/// walls.
 void read_walls(CaseContext& context, const toml::table& root,
                 case_data::Case& result);
 void read_fillets(CaseContext& context, const toml::table& root,
                   case_data::Case& result);
 void read_fields(CaseContext& context, const toml::table& root,
+                 case_data::Case& result);
+void read_spines(CaseContext& context, const toml::table& root,
                  case_data::Case& result);
 
 /// The surface that a response or zone names with `key`: a film or solid that

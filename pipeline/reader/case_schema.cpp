@@ -68,6 +68,7 @@ std::vector<TableSpec> make_tables() {
       fillet_table(),
       wall_table(),
       field_table(),
+      spine_table(),
       {"resolution",
        false,
        N::Always,
@@ -193,8 +194,9 @@ std::vector<TableSpec> make_tables() {
 
 bool can_repeat(const std::string& table) {
   static const std::vector<std::string> tables = {
-      "curves", "films",   "solids",    "bodies",  "fillets", "walls",
-      "fields", "support", "responses", "exclude", "load",    "constraint"};
+      "curves",  "films",  "solids",    "bodies",  "fillets",
+      "walls",   "fields", "spines",    "support", "responses",
+      "exclude", "load",   "constraint"};
   return std::find(tables.begin(), tables.end(), table) != tables.end();
 }
 

@@ -22,6 +22,7 @@ enum class KeyType {
   Counts,          // one to three integers
   Flag,            // true or false
   Quantity,        // number, expression or "value unit"
+  Quantities,      // one, or an array of them
   Constant,        // a quantity that no design variable moves
   Place,           // a quantity, or an expression that also knows x, y, z
   Vector,          // array of three quantities
@@ -79,6 +80,7 @@ TableSpec solid_table();     // case_reader_films.cpp
 TableSpec wall_table();      // case_reader_walls.cpp
 TableSpec fillet_table();    // the same
 TableSpec field_table();     // case_reader_energies.cpp
+TableSpec spine_table();     // the same
 TableSpec bolt_table();      // case_reader_loads.cpp
 TableSpec load_table();      // the same
 TableSpec analysis_table();  // case_reader_analysis.cpp

@@ -34,6 +34,8 @@ const char* type_text(const KeySpec& key) {
       return "true or false";
     case K::Quantity:
       return "quantity";
+    case K::Quantities:
+      return "quantity or quantities";
     case K::Constant:
       return "constant";
     case K::Place:
@@ -192,6 +194,8 @@ Json type_schema(const KeySpec& key) {
     case K::Constant:
     case K::Place:
       return quantity;
+    case K::Quantities:
+      return {{"anyOf", {quantity, array(quantity, 1, 0)}}};
     case K::Vector:
     case K::ConstantVector:
     case K::PlaceVector:

@@ -264,7 +264,8 @@ DatafileResult evolve_film(const datafile::FeFile& file,
         descend_by_levels(result.complex, refinements, options, result.stopped);
   }
   const energy::FilmEnergy energy(result.complex);
-  const VectorX values = energy.quantities(result.complex.mesh.points);
+  const VectorX values = energy.quantities(result.complex.mesh.points,
+                                           energy::targets_of(result.complex));
   for (std::size_t q = 0; q < result.complex.quantities.size(); ++q) {
     result.quantities.emplace_back(result.complex.quantities[q].name,
                                    values[static_cast<Eigen::Index>(q)]);

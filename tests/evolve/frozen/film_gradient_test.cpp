@@ -91,6 +91,14 @@ films::FilmSystem rates_of(const Design& design) {
       rates.caps[c].wall->tension -= low.caps[c].wall->tension;
     }
   }
+  for (std::size_t s = 0; s < rates.spines.size(); ++s) {
+    films::SpineSpec& spine = rates.spines[s];
+    spine.tension -= low.spines[s].tension;
+    for (std::size_t k = 0; k < spine.points.size(); ++k) {
+      spine.points[k] -= low.spines[s].points[k];
+      spine.radii[k] -= low.spines[s].radii[k];
+    }
+  }
   for (std::size_t b = 0; b < rates.bodies.size(); ++b) {
     if (rates.bodies[b].volume) {
       *rates.bodies[b].volume -= *low.bodies[b].volume;
@@ -232,6 +240,45 @@ films::FilmSystem quarter(double p) {
   return system;
 }
 
+/// Two arms from a hub to rings that move, points, radii and tension of the
+/// spines too; one with a tip.
+films::FilmSystem spined(double p) {
+  films::FilmSystem system;
+  system.curves = {
+      {"low", curves::Circle{{0, 0, 0}, Vec3(0.1 * p, 0, -1), 1.0}},
+      {"high", curves::Circle{{2.0 + 0.2 * p, 0, 6}, Vec3(0.3, 0, 1), 0.9}}};
+  system.films = {{"skin", films::FilmKind::Spines, {"low", "high"}, 1.0}};
+  system.caps = {{"foot", "low"}, {"head", "high"}};
+  system.bodies = {{"part", {"skin", "foot", "head"}}};
+  system.spines = {
+      {.name = "arm",
+       .body = "part",
+       .points = {{0, 0, 0}, {0.3 * p, 0.2 * p, 3.0}, {2.0 + 0.2 * p, 0, 6}},
+       .radii = {1.0, 0.9 + 0.1 * p, 0.9},
+       .tension = 1.0 + 0.2 * p},
+      {.name = "horn",
+       .body = "part",
+       .points = {{0.3 * p, 0.2 * p, 3.0}, {0, 3.0 + 0.3 * p, 3.5}},
+       .smooth = false,
+       .radii = {0.8, 0.7 + 0.1 * p}}};
+  return system;
+}
+
+TEST(FilmGradient, OfAFilmHeldBySpines) {
+  for (const int refinements : {0, 1}) {
+    const frozen::FilmModel model = frozen::FilmModel::freeze(
+        spined(0), {.edge = 0.4, .refinements = refinements});
+    ASSERT_FALSE(model.reference().failure)
+        << model.reference().failure->message;
+    expect_exact(model, spined, 0.2, 1e-2);
+    expect_exact(
+        model, spined, 0.2, 1e-2,
+        [&](const settle::FilmState& film, const films::FilmSystem& system) {
+          return model.margin(film, system);
+        });
+  }
+}
+
 TEST(FilmGradient, OfAQuarterThatPlanesCut) {
   for (const int refinements : {0, 1}) {
     const frozen::FilmModel model = frozen::FilmModel::freeze(
@@ -331,6 +378,22 @@ TEST(FilmGradient, ForwardsOfAFilmThatSlidesIsItsTranspose) {
         flat(model.tangents(film, system, {rates}).front()));
     EXPECT_NEAR(forwards / backwards, 1.0, 1e-11);
   }
+}
+
+TEST(FilmGradient, ForwardsOfAFilmHeldBySpinesIsItsTranspose) {
+  const frozen::FilmModel model =
+      frozen::FilmModel::freeze(spined(0), {.edge = 0.4, .refinements = 1});
+  const films::FilmSystem system = spined(0.2);
+  const settle::FilmState film = model.settle(system);
+  ASSERT_FALSE(film.failure);
+  const films::FilmSystem rates = rates_of(spined);
+  frozen::FilmCovector by;
+  by.points = covector(model).points;
+  const double backwards =
+      model.rate(model.transpose(film, system, {by}).front(), system, rates);
+  const double forwards =
+      flat(by.points).dot(flat(model.tangents(film, system, {rates}).front()));
+  EXPECT_NEAR(forwards / backwards, 1.0, 1e-11);
 }
 
 films::FilmSystem blown(double p) {

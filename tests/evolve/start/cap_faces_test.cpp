@@ -78,9 +78,9 @@ TEST(CapFaces, RandomPlatesWithHolesAreFilled) {
   constexpr int kPlates = 200;
   for (unsigned seed = 0; seed < kPlates; ++seed) {
     const std::vector<Points> loops = RandomPlate(seed).draw();
-    double area = start::polygon_area_vector(loops[0]).norm();
+    double area = polygon_area_vector(loops[0]).norm();
     for (std::size_t k = 1; k < loops.size(); ++k) {
-      area -= start::polygon_area_vector(loops[k]).norm();
+      area -= polygon_area_vector(loops[k]).norm();
     }
     SurfaceMesh face;
     ASSERT_NO_THROW(face = start::fill_face(loops, 10.0, true, "rim"))

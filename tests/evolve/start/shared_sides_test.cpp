@@ -34,7 +34,7 @@ Points ring(double radius, int n, double x = 0.0) {
 }
 
 double polygon_area(const Points& rim) {
-  return start::polygon_area_vector(rim).norm();
+  return polygon_area_vector(rim).norm();
 }
 
 TEST(FillDisk, LeavesHolesOpen) {

@@ -256,8 +256,7 @@ TEST(FillDisk, IsIsotropicForManyCurvesAndSizes) {
     EXPECT_EQ(systems::euler_characteristic(disk), 1) << n;
     EXPECT_EQ(systems::open_edges(disk), n);
     EXPECT_GT(systems::smallest_angle_deg(disk), kCapAngle) << n;
-    EXPECT_NEAR(surface_area(disk), start::polygon_area_vector(rim).norm(),
-                1e-12);
+    EXPECT_NEAR(surface_area(disk), polygon_area_vector(rim).norm(), 1e-12);
   }
 }
 

@@ -5,7 +5,7 @@
 
 #include "core/types.h"
 
-namespace meniscus::start {
+namespace meniscus::films {
 
 /// Facets between closed polygons `low` (ids 0 ...) and `high` (ids continue
 /// after low's), whose counts of points may differ. Both may run either way;
@@ -13,4 +13,4 @@ namespace meniscus::start {
 /// run along `low` in its direction.
 std::vector<Triangle> loft_band(const Points& low, const Points& high);
 
-}  // namespace meniscus::start
+}  // namespace meniscus::films

@@ -1,14 +1,14 @@
-#include "evolve/start/loft.h"
+#include "evolve/films/loft.h"
 
 #include <cmath>
 #include <limits>
 
 #include <Eigen/Geometry>
 
+#include "core/geometry/surface_mesh.h"
 #include "core/heed_stop.h"
-#include "evolve/start/disk_fill.h"
 
-namespace meniscus::start {
+namespace meniscus::films {
 
 namespace {
 
@@ -139,4 +139,4 @@ std::vector<Triangle> loft_band(const Points& low, const Points& high) {
   return facets;
 }
 
-}  // namespace meniscus::start
+}  // namespace meniscus::films

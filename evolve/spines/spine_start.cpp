@@ -1,0 +1,302 @@
+#include "evolve/spines/spine_start.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "evolve/films/loft.h"
+#include "evolve/spines/isosurface.h"
+
+namespace meniscus::spines {
+
+namespace {
+
+constexpr double kNear = 0.5;   // of a rim's plane [radii]
+constexpr double kCell = 0.5;   // of the lattice [radii]
+constexpr double kBall = 1.6;   // of the region about samples [radii]
+constexpr double kReach = 3.0;  // of what a rim cuts off [radii]
+
+/// The middle of a rim and its vector area.
+struct RimPlane {
+  Vec3 middle = Vec3::Zero();
+  Vec3 normal = Vec3::Zero();  // unit
+  double radius = 0.0;         // of a circle of its area
+
+  explicit RimPlane(const Points& points) {
+    for (const Vec3& p : points) {
+      middle += p / static_cast<double>(points.size());
+    }
+    const Vec3 area = polygon_area_vector(points);
+    radius = std::sqrt(area.norm() / std::numbers::pi);
+    normal = area.normalized();
+  }
+};
+
+/// Whole turns of the rim around a place, seen along its plane's normal.
+bool within(const RimPlane& plane, const Points& rim, const Vec3& at) {
+  double turns = 0.0;
+  for (std::size_t k = 0; k < rim.size(); ++k) {
+    const auto flat = [&](const Vec3& p) -> Vec3 {
+      const Vec3 d = p - at;
+      return d - plane.normal.dot(d) * plane.normal;
+    };
+    const Vec3 a = flat(rim[k]);
+    const Vec3 b = flat(rim[(k + 1) % rim.size()]);
+    turns += std::atan2(plane.normal.dot(a.cross(b)), a.dot(b));
+  }
+  return turns > std::numbers::pi;
+}
+
+/// Where the liquid meets a rim: what a cut leaves of it is joined to the rim.
+struct Cut {
+  int rim = 0;
+  Vec3 at = Vec3::Zero();  // the spine's end, or the rim's middle
+  /// Of an end: unit, along the rim's normal, away from the liquid, which ends
+  /// there. 0 at a bore.
+  Vec3 out = Vec3::Zero();
+  double radius = 0.0;
+
+  bool cuts(const Vec3& p, double before) const {
+    return !out.isZero() && (p - at).dot(out) > -before &&
+           (p - at).norm() < kReach * radius;
+  }
+};
+
+/// The cylinder of a bore, from rim to rim and beyond.
+class BoreCut {
+ public:
+  BoreCut(const Points& low, const Points& high)
+      : low_(low), high_(high), low_plane_(low), high_plane_(high) {}
+
+  bool cuts(const Vec3& p) const {
+    const Vec3 middle = 0.5 * (low_plane_.middle + high_plane_.middle);
+    const double reach =
+        0.5 * (high_plane_.middle - low_plane_.middle).norm() +
+        kReach * std::max(low_plane_.radius, high_plane_.radius);
+    return (p - middle).norm() < reach && within(low_plane_, low_, p) &&
+           within(high_plane_, high_, p);
+  }
+
+ private:
+  Points low_, high_;
+  RimPlane low_plane_, high_plane_;
+};
+
+struct SpineField {
+  std::vector<films::Pole> poles;
+  std::vector<double> tension;
+
+  double level(const Vec3& x) const {
+    double sum = -1.0;
+    for (std::size_t k = 0; k < poles.size(); ++k) {
+      sum += level_at(poles[k], tension[k], x);
+    }
+    return sum;
+  }
+};
+
+/// Closed walks along the border, in its direction. Throws InvalidInput where
+/// they touch.
+std::vector<std::vector<int>> border_loops(const SurfaceMesh& mesh,
+                                           const std::string& film) {
+  std::map<Edge, int> uses;
+  for (const Triangle& t : mesh.facets) {
+    for (int k = 0; k < 3; ++k) {
+      uses[{t[k], t[(k + 1) % 3]}] += 1;
+    }
+  }
+  std::map<int, int> next;
+  for (const auto& [edge, count] : uses) {
+    if (uses.find({edge[1], edge[0]}) == uses.end() &&
+        !next.emplace(edge[0], edge[1]).second) {
+      const Vec3& p = mesh.points[edge[0]];
+      throw InvalidInput(fmt::format(
+          "film '{}': the arms of its spines touch a rim together at ({:.6g}, "
+          "{:.6g}, {:.6g}); move them apart or join them before the rim",
+          film, p.x(), p.y(), p.z()));
+    }
+  }
+  std::vector<std::vector<int>> loops;
+  while (!next.empty()) {
+    std::vector<int>& loop = loops.emplace_back();
+    int at = next.begin()->first;
+    for (auto found = next.find(at); found != next.end();
+         found = next.find(at)) {
+      loop.push_back(at);
+      at = found->second;
+      next.erase(found);
+    }
+  }
+  return loops;
+}
+
+Vec3 middle_of(const Points& points, const std::vector<int>& loop) {
+  Vec3 sum = Vec3::Zero();
+  for (const int v : loop) {
+    sum += points[v] / static_cast<double>(loop.size());
+  }
+  return sum;
+}
+
+}  // namespace
+
+std::array<int, 2> rims_at_ends(const films::SpineSpec& spine,
+                                const std::vector<SpineRim>& rims) {
+  std::array<int, 2> result = {-1, -1};
+  for (int side = 0; side < 2 && !spine.points.empty(); ++side) {
+    const Vec3& end = side == 0 ? spine.points.front() : spine.points.back();
+    const double radius = side == 0 ? spine.radii.front() : spine.radii.back();
+    for (std::size_t k = 0; k < rims.size(); ++k) {
+      const RimPlane plane(rims[k].points);
+      if (std::abs((end - plane.middle).dot(plane.normal)) < kNear * radius &&
+          within(plane, rims[k].points, end)) {
+        result[side] = static_cast<int>(k);
+      }
+    }
+  }
+  return result;
+}
+
+SurfaceMesh spine_start(const std::vector<films::SpineSpec>& spines,
+                        const std::vector<SpineRim>& rims,
+                        const std::vector<Bore>& bores,
+                        const std::string& film) {
+  // The field, the balls around it that have its level set, and the cuts at
+  // rims.
+  SpineField field;
+  std::vector<Ball> balls;
+  std::vector<Cut> cuts;
+  double least = std::numeric_limits<double>::infinity();
+  for (const films::SpineSpec& spine : spines) {
+    const std::array<int, 2> at = rims_at_ends(spine, rims);
+    const films::SpineSampling sampling =
+        sample_spine(spine, 0, {at[0] >= 0, at[1] >= 0});
+    const std::vector<films::Pole> poles = poles_of(sampling, spine);
+    for (std::size_t k = 0; k < poles.size(); ++k) {
+      field.poles.push_back(poles[k]);
+      field.tension.push_back(spine.tension);
+      if (sampling.samples[k].beyond == 0.0) {
+        balls.push_back(
+            {poles[k].at, kBall / kCore * std::sqrt(poles[k].core2)});
+      }
+    }
+    for (int side = 0; side < 2; ++side) {
+      const std::size_t n = spine.points.size();
+      const double radius = side == 0 ? spine.radii[0] : spine.radii[n - 1];
+      least = std::min(least, radius);
+      if (at[side] < 0) {
+        continue;
+      }
+      const RimPlane plane(rims[at[side]].points);
+      const Vec3& end = side == 0 ? spine.points[0] : spine.points[n - 1];
+      const Vec3& before = side == 0 ? spine.points[1] : spine.points[n - 2];
+      const double sign = (end - before).dot(plane.normal) > 0.0 ? 1.0 : -1.0;
+      cuts.push_back({at[side], end, sign * plane.normal, radius});
+    }
+  }
+  for (const films::SpineSpec& spine : spines) {
+    least = std::min(least,
+                     *std::min_element(spine.radii.begin(), spine.radii.end()));
+  }
+  std::vector<BoreCut> bore_cuts;
+  for (const Bore& bore : bores) {
+    bore_cuts.emplace_back(rims[bore[0]].points, rims[bore[1]].points);
+    for (const int rim : bore) {
+      const RimPlane plane(rims[rim].points);
+      cuts.push_back({rim, plane.middle, Vec3::Zero(), plane.radius});
+    }
+  }
+  for (std::size_t k = 0; k < rims.size(); ++k) {
+    const auto count = std::count_if(
+        cuts.begin(), cuts.end(),
+        [&](const Cut& c) { return c.rim == static_cast<int>(k); });
+    if (count != 1) {
+      throw InvalidInput(fmt::format(
+          "film '{}': {} its curve '{}'; let one spine end within it, less "
+          "than "
+          "half its radius from its plane, or make it the rim of a bore by a "
+          "solid of kind ring",
+          film,
+          count == 0 ? std::string("no spine ends at")
+                     : fmt::format("{} spines end at", count),
+          rims[k].curve));
+    }
+  }
+  const double cell = kCell * least;
+  const SurfaceMesh level = isosurface(
+      [&](const Vec3& x) { return field.level(x); }, balls, cell,
+      [&](const Vec3& x) {
+        return std::any_of(
+                   cuts.begin(), cuts.end(),
+                   [&](const Cut& cut) { return cut.cuts(x, 0.5 * cell); }) ||
+               std::any_of(bore_cuts.begin(), bore_cuts.end(),
+                           [&](const BoreCut& cut) { return cut.cuts(x); });
+      });
+  // The rims' points first, then those of the level set; each of its loops is
+  // joined to the nearest cut's rim.
+  SurfaceMesh result;
+  result.labels = {film};
+  std::vector<int> first;
+  for (const SpineRim& rim : rims) {
+    first.push_back(static_cast<int>(result.points.size()));
+    result.points.insert(result.points.end(), rim.points.begin(),
+                         rim.points.end());
+  }
+  const auto shift = static_cast<int>(result.points.size());
+  result.points.insert(result.points.end(), level.points.begin(),
+                       level.points.end());
+  for (const Triangle& t : level.facets) {
+    result.facets.push_back({t[0] + shift, t[1] + shift, t[2] + shift});
+  }
+  std::vector<char> joined(cuts.size(), 0);
+  for (const std::vector<int>& loop : border_loops(level, film)) {
+    const Vec3 middle = middle_of(level.points, loop);
+    std::size_t nearest = 0;
+    for (std::size_t k = 1; k < cuts.size(); ++k) {
+      if ((cuts[k].at - middle).norm() < (cuts[nearest].at - middle).norm()) {
+        nearest = k;
+      }
+    }
+    if (cuts.empty() || joined[nearest] != 0 ||
+        (cuts[nearest].at - middle).norm() > kReach * cuts[nearest].radius) {
+      throw InvalidInput(fmt::format(
+          "film '{}': the arms of its spines do not close near ({:.6g}, "
+          "{:.6g}, "
+          "{:.6g}); arms that are thin beside others, or that meet a rim from "
+          "the side, need a point more",
+          film, middle.x(), middle.y(), middle.z()));
+    }
+    joined[nearest] = 1;
+    const int rim = cuts[nearest].rim;
+    Points low;
+    for (const int v : loop) {
+      low.push_back(level.points[v]);
+    }
+    for (Triangle t : films::loft_band(low, rims[rim].points)) {
+      for (int& v : t) {
+        v = v < static_cast<int>(low.size())
+                ? loop[v] + shift
+                : first[rim] + v - static_cast<int>(low.size());
+      }
+      // The band runs along the loop as the facets there do: the other way.
+      result.facets.push_back({t[0], t[2], t[1]});
+    }
+  }
+  for (std::size_t k = 0; k < cuts.size(); ++k) {
+    if (joined[k] == 0) {
+      throw InvalidInput(
+          fmt::format("film '{}': its spines' liquid does not reach curve '{}'",
+                      film, rims[cuts[k].rim].curve));
+    }
+  }
+  result.facet_label.assign(result.facets.size(), 0);
+  return result;
+}
+
+}  // namespace meniscus::spines

@@ -1,0 +1,186 @@
+// Films that spines hold: arms of any length, their blends and gradients.
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "evolve/frozen/film_model.h"
+
+namespace meniscus::spine_films_test {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+films::SpineSpec arm(const std::string& name, Points points,
+                     std::vector<double> radii, bool smooth = false) {
+  if (radii.size() == 1) {
+    radii.resize(points.size(), radii[0]);
+  }
+  return {.name = name,
+          .body = "part",
+          .points = std::move(points),
+          .smooth = smooth,
+          .radii = std::move(radii)};
+}
+
+/// Arms from a common film to circles around spines' ends.
+films::FilmSystem spined(std::vector<films::SpineSpec> spines,
+                         const std::vector<curves::Circle>& rims) {
+  films::FilmSystem system;
+  films::FilmSpec skin{.name = "skin", .kind = films::FilmKind::Spines};
+  films::BodySpec part{.name = "part", .enclosed_by = {"skin"}};
+  for (std::size_t k = 0; k < rims.size(); ++k) {
+    const std::string name = "rim_" + std::to_string(k);
+    system.curves.push_back({name, rims[k]});
+    skin.curves.push_back(name);
+    system.caps.push_back({"cap_" + std::to_string(k), name});
+    part.enclosed_by.push_back(system.caps.back().name);
+  }
+  system.films = {std::move(skin)};
+  system.bodies = {std::move(part)};
+  system.spines = std::move(spines);
+  return system;
+}
+
+films::FilmSystem tube(double length, double radius) {
+  return spined({arm("arm", {Vec3::Zero(), Vec3(0, 0, length)}, {radius})},
+                {curves::Circle{Vec3::Zero(), -Vec3::UnitZ(), radius},
+                 curves::Circle{Vec3(0, 0, length), Vec3::UnitZ(), radius}});
+}
+
+const settle::FilmState& settled(const frozen::FilmModel& model) {
+  const settle::FilmState& film = model.reference();
+  EXPECT_FALSE(film.failure) << film.report.verdict;
+  return film;
+}
+
+// T/R^2 (4 R^2/(R^2 + e^2) - 1) + T (pi/L)^2.
+TEST(SpineFilms, TubesOfAnyLengthStandWithTheEigenvalueOfTheFormula) {
+  for (const double length : {200.0, 400.0}) {
+    const frozen::FilmModel model =
+        frozen::FilmModel::freeze(tube(length, 10.0), {.edge = 5.0});
+    const settle::FilmState& film = settled(model);
+    EXPECT_EQ(film.report.index, 0);
+    const double formula =
+        0.01 * (4.0 / 1.49 - 1.0) + std::pow(kPi / length, 2);
+    EXPECT_NEAR(film.report.min_eigenvalue, formula, 0.05 * formula) << length;
+    EXPECT_NEAR(film.report.bodies[0].volume, kPi * 100.0 * length,
+                0.03 * kPi * 100.0 * length);
+  }
+}
+
+TEST(SpineFilms, ComeNearTheTubeAsTheSquareOfTheEdge) {
+  double before = 0.0;
+  for (const double edge : {5.0, 2.5}) {
+    const frozen::FilmModel model = frozen::FilmModel::freeze(
+        tube(100.0, 10.0), {.edge = edge, .refinements = 0});
+    const settle::FilmState& film = settled(model);
+    double most = 0.0;
+    for (const Vec3& p : film.points) {
+      const double r = std::hypot(p.x(), p.y());
+      if (p.z() > 1.0 && p.z() < 99.0) {
+        most = std::max(most, std::abs(r - 10.0));
+      }
+    }
+    EXPECT_LT(most, 0.3);
+    if (before > 0.0) {
+      EXPECT_LT(most, before);
+    }
+    before = most;
+  }
+}
+
+/// Three arms of that length that meet in the middle, 120 degrees apart.
+films::FilmSystem spider(int arms, double length, double radius, double p = 0) {
+  std::vector<films::SpineSpec> spines;
+  std::vector<curves::Circle> rims;
+  for (int k = 0; k < arms; ++k) {
+    const double a = 2.0 * kPi * k / arms + 0.05 * p;
+    const Vec3 way(std::cos(a), std::sin(a), 0.1 * p * k);
+    spines.push_back(arm("arm_" + std::to_string(k),
+                         {Vec3(0, 0, 0.5 * p), length * way},
+                         {radius * (1.0 + 0.1 * p), radius}));
+    rims.push_back({length * way, way.normalized(), radius});
+  }
+  return spined(spines, rims);
+}
+
+TEST(SpineFilms, ThreeLongArmsThatMeetStand) {
+  const frozen::FilmModel model =
+      frozen::FilmModel::freeze(spider(3, 130.0, 10.0), {.edge = 5.0});
+  const settle::FilmState& film = settled(model);
+  EXPECT_EQ(film.report.index, 0);
+  EXPECT_LT(film.report.seconds, 20.0);
+}
+
+TEST(SpineFilms, ATipEndsRound) {
+  const frozen::FilmModel model = frozen::FilmModel::freeze(
+      spined({arm("horn", {Vec3::Zero(), Vec3(20, 0, 60), Vec3(60, 0, 80)},
+                  {10, 9, 8}, true)},
+             {curves::Circle{Vec3::Zero(), -Vec3::UnitZ(), 10.0}}),
+      {.edge = 4.0});
+  const settle::FilmState& film = settled(model);
+  double most = 0.0;
+  for (const Vec3& p : film.points) {
+    most = std::max(most, p.x());
+  }
+  EXPECT_GT(most, 60.0);
+  EXPECT_LT(most, 60.0 + 2.0 * 8.0);
+}
+
+TEST(SpineFilms, AFilmThatFloatsNeedsNoRim) {
+  const frozen::FilmModel model = frozen::FilmModel::freeze(
+      spined({arm("ring", {Vec3(30, 0, 0), Vec3(0, 30, 0), Vec3(-30, 0, 0)},
+                  {8}, true)},
+             {}),
+      {.edge = 4.0});
+  settled(model);
+}
+
+/// An eye around a bore along y, an arm from it to a ring.
+TEST(SpineFilms, AnEyeAroundABore) {
+  films::FilmSystem system =
+      spined({}, {curves::Circle{Vec3(0, -9, 0), -Vec3::UnitY(), 10.0},
+                  curves::Circle{Vec3(0, 9, 0), Vec3::UnitY(), 10.0},
+                  curves::Circle{Vec3(90, 0, 0), Vec3::UnitX(), 8.0}});
+  system.caps = {{"bore", "rim_0", "rim_1"}, {"head", "rim_2"}};
+  system.bodies[0].enclosed_by = {"skin", "bore", "head"};
+  Points ring;
+  for (int k = 0; k <= 12; ++k) {
+    const double a = 2.0 * kPi * k / 12.0;
+    ring.emplace_back(15.0 * std::cos(a), 0.0, 15.0 * std::sin(a));
+  }
+  system.spines = {arm("eye", ring, {9.0}, true),
+                   arm("arm", {Vec3(20, 0, 0), Vec3(90, 0, 0)}, {8.0})};
+  const frozen::FilmModel model =
+      frozen::FilmModel::freeze(system, {.edge = 4.0});
+  const settle::FilmState& film = settled(model);
+  EXPECT_EQ(film.report.index, 0);
+  double most = 0.0;
+  for (const Vec3& p : film.points) {
+    most = std::max(most, -p.x());
+  }
+  EXPECT_NEAR(most, 24.0, 3.0);
+}
+
+TEST(SpineFilms, RimsWithoutASpineAreNamed) {
+  films::FilmSystem system = tube(60.0, 10.0);
+  system.spines[0].points[1] = Vec3(0, 0, 40);
+  try {
+    frozen::FilmModel::freeze(system, {.edge = 5.0});
+    ADD_FAILURE();
+  } catch (const InvalidInput& error) {
+    EXPECT_NE(std::string(error.what())
+                  .find("no spine ends at its curve "
+                        "'rim_1'"),
+              std::string::npos)
+        << error.what();
+  }
+  system = tube(60.0, 10.0);
+  system.spines.clear();
+  EXPECT_THROW(frozen::FilmModel::freeze(system, {.edge = 5.0}), InvalidInput);
+}
+
+}  // namespace
+}  // namespace meniscus::spine_films_test

@@ -1,0 +1,184 @@
+#!/usr/bin/env python3
+"""Liquid held along spines, as users write it: arms of any length and networks
+of them, exact gradients by points and radii, mistakes told by line."""
+import json
+import math
+import random
+import unittest
+
+from program import ProgramTest
+
+
+def circle(name, center, normal, radius):
+    return f"""
+[curves.{name}]
+kind = "circle"
+center = {list(center)}
+normal = {list(normal)}
+radius = {radius}
+
+[solids.{name}_pad]
+kind = "cap"
+curve = "{name}"
+"""
+
+
+def spine(name, points, radius, more=""):
+    return f"""
+[spines.{name}]
+points = {[list(p) for p in points]}
+radius = {radius}
+{more}
+"""
+
+
+def part(title, rims, spines, top="", loads="", resolution=6.0):
+    """`rims`: text of circle(), by name of the curve."""
+    names = list(rims)
+    quoted = ", ".join(f'"{name}"' for name in names)
+    pads = ", ".join(f'"{name}_pad"' for name in names)
+    return f"""title = "{title}"
+units = "mm-N-MPa"
+{top}
+{"".join(rims.values())}
+[films.skin]
+kind = "spines"
+curves = [{quoted}]
+{"".join(spines)}
+[bodies.part]
+enclosed_by = ["skin", {pads}]
+material = "steel"
+
+[materials.steel]
+youngs_modulus = 2e5
+poisson_ratio = 0.3
+density = 7.85e-9
+
+[load_cases.service]
+supports = [{{ on = "{names[0]}_pad", fix = "xyz" }}]
+loads = [{loads or f'{{ on = "{names[-1]}_pad", force = [0, 100, -300] }}'}]
+
+[responses.mass]
+kind = "mass"
+
+[responses.sway]
+kind = "mean_displacement"
+on = "{names[-1]}_pad"
+direction = [0, 0, 1]
+
+[analysis]
+buckling = 0
+
+[resolution]
+fea = {resolution}
+"""
+
+
+# A stem and two arms; reach, radii and the joint's place may follow the design.
+TREE = part(
+    "A tree of three spines",
+    {"foot": circle("foot", [0, 0, 0], [0, 0, -1], 12),
+     "left": circle("left", ["-reach", 0, 100], [-1, 0, 0], 9),
+     "right": circle("right", [80, 0, 100], [1, 0, 0], 9)},
+    [spine("stem", [[0, 0, 0], [0, 0, "joint"]], ["12", "thick"]),
+     spine("left_arm", [[0, 0, "joint"], ["-0.5 * reach", 0, 97],
+                        ["-reach", 0, 100]], ["thick", 9, 9]),
+     spine("right_arm", [[0, 0, "joint"], [40, 0, 97], [80, 0, 100]],
+           ["thick", 9, 9])],
+    top="""
+[design.reach]
+initial = 80
+bounds = [60, 100]
+
+[design.joint]
+initial = 70
+bounds = [55, 80]
+
+[design.thick]
+initial = 11
+bounds = [9, 14]
+""", resolution=7.0)
+
+
+class Spines(ProgramTest):
+    def run_case(self, text, *more, name="case", expect=0):
+        (self.folder / f"{name}.toml").write_text(text)
+        done = self.call("run", f"{name}.toml", "--out", name, "--no-pictures",
+                         *more)
+        self.assertEqual(done.returncode, expect, done.stdout + done.stderr)
+        return json.loads((self.folder / name / "result.json").read_text())
+
+    def test_a_slender_arm_is_the_tube_that_it_says(self):
+        # L / R = 24, where volume alone stands to 6.28: mass of the cylinder.
+        length, radius = 240.0, 10.0
+        text = part("A rod", {
+            "low": circle("low", [0, 0, 0], [0, 0, -1], radius),
+            "high": circle("high", [0, 0, length], [0, 0, 1], radius)},
+            [spine("rod", [[0, 0, 0], [0, 0, length]], radius)],
+            loads='{ on = "high_pad", force = [300, 0, 0] }', resolution=5.0)
+        found = self.run_case(text)
+        self.assertEqual(found["film"]["index"], 0)
+        self.assertAlmostEqual(
+            found["responses"]["mass"]["value"] if isinstance(
+                found["responses"]["mass"], dict) else
+            found["responses"]["mass"],
+            math.pi * radius ** 2 * length * 7.85e-9,
+            delta=0.01 * math.pi * radius ** 2 * length * 7.85e-9)
+
+    def test_gradients_are_exact(self):
+        (self.folder / "tree.toml").write_text(TREE)
+        done = self.call("check-gradient", "tree.toml", timeout=300)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+
+    def test_random_networks_stand(self):
+        # Trees of three to six arms from one joint, in directions of any kind
+        # that are not too near each other.
+        draw = random.Random(26)
+        for trial in range(4):
+            radius = 8.0
+            directions = []
+            while len(directions) < 3 + trial % 4:
+                d = [draw.gauss(0, 1) for _ in range(3)]
+                size = math.sqrt(sum(x * x for x in d))
+                d = [x / size for x in d]
+                if all(sum(a * b for a, b in zip(d, e)) < 0.3
+                       for e in directions):
+                    directions.append(d)
+            lengths = [draw.uniform(40, 110) for _ in directions]
+            rims, spines = {}, []
+            for k, (d, length) in enumerate(zip(directions, lengths)):
+                end = [round(length * x, 6) for x in d]
+                rims[f"end_{k}"] = circle(f"end_{k}", end, d,
+                                          radius * draw.uniform(0.9, 1.4))
+                spines.append(spine(f"arm_{k}", [[0, 0, 0], end],
+                                    [radius, radius]))
+            found = self.run_case(part(f"Network {trial}", rims, spines,
+                                       resolution=5.0), name=f"net_{trial}")
+            self.assertEqual(found["film"]["index"], 0, trial)
+
+    def test_mistakes_are_told_by_line(self):
+        cases = [
+            (TREE.replace("radius = ['12', 'thick']", "radius = [12, 11, 10]"),
+             r"spines\.stem\.radius has 3 for 2 points"),
+            (TREE.replace("radius = ['12', 'thick']", "radius = -2"),
+             r"spines\.stem\.radius.*above 0"),
+            (TREE.replace("[spines.stem]", '[spines.stem]\nbody = "prt"'),
+             r"body 'prt'.*part"),
+            (TREE.replace("[spines.stem]", '[spines.stem]\nkind = "arc"'),
+             r"spline"),
+            (TREE.replace("[80, 0, 100]], ", "[80, 0, 80]], ", 1)
+             .replace("[40, 0, 97], [80, 0, 100]]", "[40, 0, 97], [80, 0, 80]]"),
+             r"no spine ends at its curve 'right'"),
+        ]
+        for number, (text, message) in enumerate(cases):
+            self.assertNotEqual(text, TREE, number)
+            (self.folder / "wrong.toml").write_text(text)
+            done = self.call("check", "wrong.toml")
+            told = done.stdout + done.stderr
+            self.assertNotEqual(done.returncode, 0, told)
+            self.assertRegex(told, message)
+            self.assertRegex(told, r"wrong\.toml:\d+")
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
