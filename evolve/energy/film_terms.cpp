@@ -165,7 +165,7 @@ class FilmTermBuilder {
                             functional, number);
           break;
         case films::FilmQuantity::Kind::BodyPoles:
-          add_body_quantity(quantity, pole_term(), factor, functional, number);
+          add_poles(quantity, factor, functional, number);
           break;
       }
     }
@@ -182,9 +182,8 @@ class FilmTermBuilder {
     return sign;
   }
 
-  void add_body_quantity(const films::FilmQuantity& quantity,
-                         std::unique_ptr<FilmTerm> term, double factor,
-                         int functional, int number) {
+  std::vector<FilmTerm::Element> elements_of(
+      const films::FilmQuantity& quantity, double factor) const {
     std::vector<FilmTerm::Element> elements;
     for (std::size_t b = 0; b < complex_.bodies.size(); ++b) {
       if (quantity.body < 0 || quantity.body == static_cast<int>(b)) {
@@ -192,6 +191,20 @@ class FilmTermBuilder {
         elements.insert(elements.end(), more.begin(), more.end());
       }
     }
+    return elements;
+  }
+
+  void add_body_quantity(const films::FilmQuantity& quantity,
+                         std::unique_ptr<FilmTerm> term, double factor,
+                         int functional, int number) {
+    add(std::move(term), elements_of(quantity, factor), functional, number);
+  }
+
+  void add_poles(const films::FilmQuantity& quantity, double factor,
+                 int functional, int number) {
+    std::vector<FilmTerm::Element> elements = elements_of(quantity, factor);
+    std::unique_ptr<FilmTerm> term =
+        pole_term(complex_.mesh, quantity.poles, elements);
     add(std::move(term), std::move(elements), functional, number);
   }
 

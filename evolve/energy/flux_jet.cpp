@@ -23,4 +23,21 @@ const std::array<QuadraturePoint, 7>& facet_rule() {
   return kRule;
 }
 
+const std::array<QuadraturePoint, 3>& three_points() {
+  static const std::array<QuadraturePoint, 3> kRule = [] {
+    const double a = 2.0 / 3.0;
+    const double b = 1.0 / 6.0;
+    const double third = 1.0 / 3.0;
+    return std::array<QuadraturePoint, 3>{
+        {{{a, b, b}, third}, {{b, a, b}, third}, {{b, b, a}, third}}};
+  }();
+  return kRule;
+}
+
+const std::array<QuadraturePoint, 1>& middle_rule() {
+  static const std::array<QuadraturePoint, 1> kRule = {
+      {{{1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0}, 1.0}}};
+  return kRule;
+}
+
 }  // namespace meniscus::energy

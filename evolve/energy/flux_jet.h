@@ -19,6 +19,10 @@ struct QuadraturePoint {
 
 /// Degree 5 on a triangle, seven points (Radon 1948).
 const std::array<QuadraturePoint, 7>& facet_rule();
+/// Degree 2: three points inside.
+const std::array<QuadraturePoint, 3>& three_points();
+/// Degree 1: the middle.
+const std::array<QuadraturePoint, 1>& middle_rule();
 
 /// N = (b - a) x (c - a), its derivative and its constant second derivative:
 /// dN/dx_i v = e_i x v.
@@ -50,13 +54,13 @@ struct NormalJet {
   }
 };
 
-/// The integral of sign F . n; `field`: (place, order) -> FieldJet.
+/// Adds the integral of sign F . n; `field`: (place, order) -> FieldJet.
 template <class Field>
-FacetJet flux_jet(double sign, const std::array<Vec3, 3>& c, JetOrder order,
-                  const Field& field) {
+void add_flux(std::span<const QuadraturePoint> rule, double sign,
+              const std::array<Vec3, 3>& c, JetOrder order, const Field& field,
+              FacetJet& sum) {
   const NormalJet n(c);
-  FacetJet sum;
-  for (const QuadraturePoint& q : facet_rule()) {
+  for (const QuadraturePoint& q : rule) {
     const auto& l = q.weight_of;
     const FieldJet f = field(q.at(c), order);
     const double w = 0.5 * sign * q.weight;
@@ -85,7 +89,6 @@ FacetJet flux_jet(double sign, const std::array<Vec3, 3>& c, JetOrder order,
       }
     }
   }
-  return sum;
 }
 
 }  // namespace meniscus::energy

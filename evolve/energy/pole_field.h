@@ -23,7 +23,11 @@ VectorX pole_rate_numbers(const std::vector<films::Pole>& rates);
 /// F at a place, of `numbers` as above.
 FieldJet pole_field(Numbers numbers, const Vec3& at, JetOrder order);
 
-/// Its flux; the term has the numbers of its poles.
-std::unique_ptr<FilmTerm> pole_term();
+/// Its flux through the elements of a term that has the numbers of the poles.
+/// Of poles far from a facet fewer of its places count: which are far is found
+/// from `mesh` and `poles` as they are and stays, so that the sum is smooth.
+std::unique_ptr<FilmTerm> pole_term(
+    const SurfaceMesh& mesh, const std::vector<films::Pole>& poles,
+    const std::vector<FilmTerm::Element>& elements);
 
 }  // namespace meniscus::energy

@@ -28,7 +28,9 @@ class FluxTerm : public FilmTerm {
 
   FacetJet jet(const Element& element, const std::array<Vec3, 3>& c,
                JetOrder order, Numbers /*numbers*/) const override {
-    return flux_jet(element.sign, c, order, field_);
+    FacetJet sum;
+    add_flux(facet_rule(), element.sign, c, order, field_, sum);
+    return sum;
   }
 
  private:

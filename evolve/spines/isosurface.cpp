@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <set>
 #include <unordered_map>
 
@@ -42,23 +43,25 @@ class Lattice {
     mesh_.labels = {"surface"};
   }
 
-  /// The cell with its lowest corner there, where none of its corners is left
-  /// out.
+  /// Whether the surface runs through the cell with its lowest corner there.
+  bool crosses(const Node& low) {
+    const std::optional<std::array<int, 8>> corner = corners(low);
+    return corner && std::any_of(corner->begin(), corner->end(), [&](int v) {
+             return inside(v) != inside(corner->front());
+           });
+  }
+
   void add_cell(const Node& low) {
-    std::array<int, 8> corner;
-    for (int k = 0; k < 8; ++k) {
-      corner[k] = node(
-          {low[0] + (k & 1), low[1] + (k >> 1 & 1), low[2] + (k >> 2 & 1)});
-      if (left_out_[corner[k]] != 0) {
-        return;
-      }
+    const std::optional<std::array<int, 8>> corner = corners(low);
+    if (!corner) {
+      return;
     }
     // Kuhn's six tetrahedra about the diagonal from corner 0 to 7: the same
     // diagonals on the faces of neighbours.
     static constexpr std::array<std::array<int, 2>, 6> kBetween = {
         {{1, 3}, {3, 2}, {2, 6}, {6, 4}, {4, 5}, {5, 1}}};
     for (const auto& [a, b] : kBetween) {
-      add_tet({corner[0], corner[a], corner[b], corner[7]});
+      add_tet({(*corner)[0], (*corner)[a], (*corner)[b], (*corner)[7]});
     }
   }
 
@@ -68,6 +71,19 @@ class Lattice {
   }
 
  private:
+  /// Nothing where one of them is left out.
+  std::optional<std::array<int, 8>> corners(const Node& low) {
+    std::array<int, 8> corner;
+    for (int k = 0; k < 8; ++k) {
+      corner[k] = node(
+          {low[0] + (k & 1), low[1] + (k >> 1 & 1), low[2] + (k >> 2 & 1)});
+      if (left_out_[corner[k]] != 0) {
+        return std::nullopt;
+      }
+    }
+    return corner;
+  }
+
   int node(const Node& at) {
     const auto [found, is_new] =
         ids_.try_emplace(at, static_cast<int>(places_.size()));
@@ -173,7 +189,28 @@ SurfaceMesh isosurface(const std::function<double(const Vec3&)>& value,
     }
     heed_stop("film");
   }
+  // On along the surface, where it leaves the balls.
   Lattice lattice(value, cell, leave_out);
+  std::vector<Node> border(cells.begin(), cells.end());
+  while (!border.empty()) {
+    std::vector<Node> next;
+    for (const Node& at : border) {
+      if (!lattice.crosses(at)) {
+        continue;
+      }
+      for (int side = 0; side < 6; ++side) {
+        Node beside = at;
+        beside[side / 2] += side % 2 == 0 ? 1 : -1;
+        if (cells.insert(beside).second) {
+          next.push_back(beside);
+        }
+      }
+    }
+    if (cells.size() > kMostCells) {
+      throw InvalidInput("a lattice of so small a step has too many cells");
+    }
+    border = std::move(next);
+  }
   for (const Node& at : cells) {
     lattice.add_cell(at);
   }

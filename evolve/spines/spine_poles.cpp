@@ -145,7 +145,10 @@ films::SpineSampling sample_spine(const films::SpineSpec& spine, int body,
                                   const std::array<bool, 2>& beyond) {
   check_spine(spine);
   const auto count = static_cast<int>(spine.points.size());
-  const bool closed = count > 3 && spine.points.front() == spine.points.back();
+  // Rounding apart: expressions of whole turns close to the last figures.
+  const bool closed =
+      count > 3 && (spine.points.front() - spine.points.back()).norm() <
+                       1e-6 * spine.radii.front();
   const PointWeights curve(count, spine.smooth, closed);
   const PointWeights radius(count, false, false);
   films::SpineSampling result{spine.name, body, {}};

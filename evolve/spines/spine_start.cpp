@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kNear = 0.5;   // of a rim's plane [radii]
 constexpr double kCell = 0.5;   // of the lattice [radii]
-constexpr double kBall = 1.6;   // of the region about samples [radii]
+constexpr double kBall = 1.2;   // about samples [radii]
 constexpr double kReach = 3.0;  // of what a rim cuts off [radii]
 
 /// The middle of a rim and its vector area.
@@ -61,6 +61,7 @@ struct Cut {
   /// there. 0 at a bore.
   Vec3 out = Vec3::Zero();
   double radius = 0.0;
+  int spine = -1;  // that ends there
 
   bool cuts(const Vec3& p, double before) const {
     return !out.isZero() && (p - at).dot(out) > -before &&
@@ -91,6 +92,7 @@ class BoreCut {
 struct SpineField {
   std::vector<films::Pole> poles;
   std::vector<double> tension;
+  std::vector<int> spine;
 
   double level(const Vec3& x) const {
     double sum = -1.0;
@@ -98,6 +100,16 @@ struct SpineField {
       sum += level_at(poles[k], tension[k], x);
     }
     return sum;
+  }
+
+  /// True where the liquid is that spine's more than all others'.
+  bool is_of(int one, const Vec3& x) const {
+    double more = 0.0;
+    for (std::size_t k = 0; k < poles.size(); ++k) {
+      const double part = level_at(poles[k], tension[k], x);
+      more += spine[k] == one ? part : -part;
+    }
+    return more > 0.0;
   }
 };
 
@@ -181,6 +193,7 @@ SurfaceMesh spine_start(const std::vector<films::SpineSpec>& spines,
     for (std::size_t k = 0; k < poles.size(); ++k) {
       field.poles.push_back(poles[k]);
       field.tension.push_back(spine.tension);
+      field.spine.push_back(static_cast<int>(&spine - spines.data()));
       if (sampling.samples[k].beyond == 0.0) {
         balls.push_back(
             {poles[k].at, kBall / kCore * std::sqrt(poles[k].core2)});
@@ -197,7 +210,8 @@ SurfaceMesh spine_start(const std::vector<films::SpineSpec>& spines,
       const Vec3& end = side == 0 ? spine.points[0] : spine.points[n - 1];
       const Vec3& before = side == 0 ? spine.points[1] : spine.points[n - 2];
       const double sign = (end - before).dot(plane.normal) > 0.0 ? 1.0 : -1.0;
-      cuts.push_back({at[side], end, sign * plane.normal, radius});
+      cuts.push_back({at[side], end, sign * plane.normal, radius,
+                      static_cast<int>(&spine - spines.data())});
     }
   }
   for (const films::SpineSpec& spine : spines) {
@@ -232,9 +246,11 @@ SurfaceMesh spine_start(const std::vector<films::SpineSpec>& spines,
   const SurfaceMesh level = isosurface(
       [&](const Vec3& x) { return field.level(x); }, balls, cell,
       [&](const Vec3& x) {
-        return std::any_of(
-                   cuts.begin(), cuts.end(),
-                   [&](const Cut& cut) { return cut.cuts(x, 0.5 * cell); }) ||
+        return std::any_of(cuts.begin(), cuts.end(),
+                           [&](const Cut& cut) {
+                             return cut.cuts(x, 0.5 * cell) &&
+                                    field.is_of(cut.spine, x);
+                           }) ||
                std::any_of(bore_cuts.begin(), bore_cuts.end(),
                            [&](const BoreCut& cut) { return cut.cuts(x); });
       });

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""docs/tutorial.md, docs/tutorial-bracket.md and docs/arms.md, done as they say: their
-commands run in order in an empty folder, their tables are put into the files that they
+"""docs/tutorial.md, docs/tutorial-bracket.md, docs/arms.md and docs/spines.md,
+done as they say: their commands run in order in an empty folder, their tables are
+put into the files that they
 name, and what they show is what comes out, but for the clock and the last digits."""
 import os
 import re
@@ -121,6 +122,11 @@ class Tutorial(ProgramTest):
         commands, shown = self.follow(DOCS / "arms.md")
         self.assertGreater(commands, 4)
         self.assertGreater(shown, 2)
+
+    def test_spines(self):
+        commands, shown = self.follow(DOCS / "spines.md")
+        self.assertGreater(commands, 6)
+        self.assertGreater(shown, 3)
 
     def follow(self, page):
         """Numbers of commands done and of outputs compared."""

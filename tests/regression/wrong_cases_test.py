@@ -26,6 +26,7 @@ COARSE = {
     "strut_family": (10, 10), "femur": (8, 8), "two_arm": (20, 20),
     "two_arm_sized": (24, 24), "h_beam_casting": (32, 32),
     "bell_crank": (16, 16),
+    "spine_crank": (9, 9),
     "fuselage": (200, 200),
 }
 # The mistakes that a case has no room for, and why.
@@ -43,6 +44,7 @@ NO_ROOM = {
     "two_arm": {"thick": "no walls"},
     "two_arm_sized": {"thick": "no walls", "member": "no family"},
     "bell_crank": {"thick": "no walls", "member": "no family"},
+    "spine_crank": {"thick": "no walls", "member": "no family"},
     "h_beam_casting": {"member": "no family"},
     "ge_bracket": {"thick": "no walls", "member": "no family"},
 }
@@ -480,6 +482,21 @@ WRONG = {
               (r"case\.toml:{line}: curves 'a_root' and 'b_root' meet near ",),
               "[curves.b_root]", "check case.toml --set root=12 --set apart=40 "
               "--set high_b=18"),
+    ],
+    "spine_crank": [
+        Wrong("swapped", "bores from one pin to the other",
+              swapped('inner = "a_back"', 'inner = "b_back"'), 2,
+              (r"case\.toml:{line}: film 'skin': its spines' liquid does not "
+               r"reach curve 'a_front'",), "[films.skin]"),
+        Wrong("open", "a pin's eye without its bore",
+              {'["skin", "pivot", "pin_a", "pin_b"]':
+               '["skin", "pivot", "pin_b"]'}, 2,
+              not_closed("part", "a_front", "add 'pin_a'"),
+              'enclosed_by = ["skin"'),
+        Wrong("crossing", "a pin within the pivot's liquid", {}, 2,
+              (r"case\.toml:{line}: film 'skin': its spines' liquid does not "
+               r"reach curve 'a_front'",), "[films.skin]",
+              "check case.toml --set long=15"),
     ],
     "ge_bracket": [
         Wrong("swapped", "a bolt's seat and the rim of a well",

@@ -154,7 +154,7 @@ TEST(SpinePoles, TermsKnowTheirNumbers) {
   const auto draw = [&] {
     return Vec3(normal(engine), normal(engine), normal(engine));
   };
-  const auto term = energy::pole_term();
+  const auto term = energy::pole_term({}, {}, {});
   for (int trial = 0; trial < 10; ++trial) {
     const films::SpineSpec spine = random_spine(engine, 3, true);
     const auto sampling = spines::sample_spine(spine, 0, {true, false});
