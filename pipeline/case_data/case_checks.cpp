@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <numbers>
 #include <set>
 
 #include <fmt/format.h>
@@ -402,6 +403,73 @@ void check_small_fillets(const Case& input, const EvaluatedCase& inputs,
   }
 }
 
+/// A rim's middle and the radius of a circle of its length.
+std::pair<Vec3, double> middle_and_radius(const curves::CurveShape& shape) {
+  constexpr int kPoints = 64;
+  Vec3 middle = Vec3::Zero();
+  for (int k = 0; k < kPoints; ++k) {
+    middle += curves::point_at(shape, k / double{kPoints}) / kPoints;
+  }
+  const double radius = curves::length_of(shape) / (2.0 * std::numbers::pi);
+  for (double& x : middle) {
+    x = std::abs(x) < 1e-9 * radius ? 0.0 : x;
+  }
+  return {middle, radius};
+}
+
+/// Proposes a spine for a loft that is longer than its liquid alone can stand:
+/// 2 pi radii of a cylinder (Plateau).
+void check_arms(const Case& input, const EvaluatedCase& inputs,
+                CaseProblems& problems) {
+  const films::FilmSystem& system = inputs.film_system;
+  for (std::size_t f = 0; f < system.films.size(); ++f) {
+    const films::FilmSpec& film = system.films[f];
+    const auto body = std::find_if(
+        system.bodies.begin(), system.bodies.end(),
+        [&](const auto& b) { return b.is_enclosed_by(film.name); });
+    if (film.kind != films::FilmKind::Loft || body == system.bodies.end() ||
+        !body->volume ||
+        std::any_of(system.films.begin(), system.films.end(),
+                    [&](const films::FilmSpec& other) {
+                      return other.name != film.name &&
+                             body->is_enclosed_by(other.name);
+                    }) ||
+        std::any_of(system.spines.begin(), system.spines.end(),
+                    [&](const auto& s) { return s.body == body->name; })) {
+      continue;
+    }
+    std::vector<std::pair<Vec3, double>> ends;
+    for (const std::string& name : film.curves) {
+      for (const curves::Curve& curve : system.curves) {
+        if (curve.name == name) {
+          ends.push_back(middle_and_radius(curve.shape));
+        }
+      }
+    }
+    if (ends.size() != 2) {
+      continue;
+    }
+    const double length = (ends[1].first - ends[0].first).norm();
+    const double radius =
+        std::max(0.5 * (ends[0].second + ends[1].second),
+                 std::sqrt(*body->volume / (std::numbers::pi * length)));
+    if (length > 2.0 * std::numbers::pi * radius) {
+      const auto place = [](const Vec3& p) {
+        return fmt::format("[{:.4g}, {:.4g}, {:.4g}]", p.x(), p.y(), p.z());
+      };
+      problems.warn(
+          input.films[f].line,
+          fmt::format("film '{}' is {:.3g} times as long as its radius, and a "
+                      "liquid alone falls apart beyond 6.28; a spine holds it: "
+                      "[spines.{}] with points = [{}, {}], radius = [{:.4g}, "
+                      "{:.4g}]",
+                      film.name, length / radius, film.name,
+                      place(ends[0].first), place(ends[1].first),
+                      ends[0].second, ends[1].second));
+    }
+  }
+}
+
 /// The case's numbers at the initial design and, one variable at a time, at
 /// the ends of the bounds.
 void check_numbers(const Case& input, CaseProblems& problems) {
@@ -420,6 +488,7 @@ void check_numbers(const Case& input, CaseProblems& problems) {
     return;
   }
   check_start(input, inputs, problems);
+  check_arms(input, inputs, problems);
   check_held_loads(input, inputs, problems);
   check_loads(input, inputs, problems);
   check_plausible(input, inputs, problems);

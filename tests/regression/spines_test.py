@@ -4,6 +4,7 @@ of them, exact gradients by points and radii, mistakes told by line."""
 import json
 import math
 import random
+import re
 import unittest
 
 from program import ProgramTest
@@ -155,6 +156,32 @@ class Spines(ProgramTest):
             found = self.run_case(part(f"Network {trial}", rims, spines,
                                        resolution=5.0), name=f"net_{trial}")
             self.assertEqual(found["film"]["index"], 0, trial)
+
+    def test_a_spine_is_proposed_for_an_arm_that_cannot_stand(self):
+        def rod(length):
+            rims = {"low": circle("low", [0, 0, 0], [0, 0, -1], 10),
+                    "high": circle("high", [0, 0, length], [0, 0, 1], 10)}
+            text = part("A rod", rims, [])
+            return text.replace('"spines"', '"loft"').replace(
+                "[bodies.part]\n",
+                f"[bodies.part]\nvolume = {math.pi * 100 * length}\n")
+        (self.folder / "rod.toml").write_text(rod(66))
+        done = self.call("check", "rod.toml")
+        told = done.stdout + done.stderr
+        self.assertEqual(done.returncode, 0, told)
+        found = re.search(r"rod\.toml:\d+: warning: film 'skin' is 6\.6 times as long.*"
+                          r"(\[spines\.skin\]) with (points = .*\]), "
+                          r"(radius = .*\])", told)
+        self.assertTrue(found, told)
+        # What it proposes stands.
+        (self.folder / "held.toml").write_text(
+            rod(66).replace("[bodies.part]", "\n".join(found.groups()) +
+                            "\n\n[bodies.part]"))
+        done = self.call("evolve", "held.toml", "--no-pictures")
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        (self.folder / "short.toml").write_text(rod(60))
+        told = self.call("check", "short.toml")
+        self.assertNotIn("spine", told.stdout + told.stderr)
 
     def test_mistakes_are_told_by_line(self):
         cases = [
