@@ -1,6 +1,6 @@
-/// Films that spines hold, from the start to the verdict: tubes, arms that meet,
-/// and random trees of many spines. Prints a table; ends with 1 where a target
-/// is missed.
+/// Films that spines hold, from the start to the verdict: tubes, arms that
+/// meet, and random trees of many spines. Prints a table; ends with 1 where a
+/// target is missed.
 #include <cmath>
 #include <cstdio>
 #include <numbers>
@@ -74,8 +74,9 @@ Graph tree(int arms, unsigned seed) {
   Graph graph{{Vec3::Zero()}, {}};
   std::vector<int> count = {0};
   while (static_cast<int>(graph.arms.size()) < arms) {
-    const auto from = static_cast<int>(
-        std::uniform_int_distribution<std::size_t>(0, count.size() - 1)(engine));
+    const auto from =
+        static_cast<int>(std::uniform_int_distribution<std::size_t>(
+            0, count.size() - 1)(engine));
     if (count[from] >= 3) {
       continue;
     }
