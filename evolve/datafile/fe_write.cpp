@@ -207,6 +207,9 @@ class FeWriter {
             "quantity '{}' is an integral over a body, which datafiles have "
             "not",
             quantity.name));
+      case films::FilmQuantity::Kind::BodyPoles:
+        throw InvalidInput(
+            "the film is held by spines, which datafiles have not");
       case films::FilmQuantity::Kind::BodyVolume:
         throw InvalidInput(fmt::format(
             "quantity '{}' is a body's volume, which a datafile says as the "

@@ -34,8 +34,10 @@ struct SpineSample {
 
 /// Where a spine is sampled.
 struct SpineSampling {
-  std::string name;  // of the spine
-  int body = 0;      // index
+  std::string name;                 // of the spine
+  int body = 0;                     // index
+  std::array<bool, 2> beyond = {};  // does it go on past its first, last point
+  bool closed = false;              // its last point is its first
   std::vector<SpineSample> samples;
 };
 

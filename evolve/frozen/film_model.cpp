@@ -247,6 +247,25 @@ std::vector<films::Pole> FilmModel::Impl::poles_of(
   return poles;
 }
 
+void FilmModel::Impl::sample_spines(const films::FilmSystem& system,
+                                    films::FilmComplex& complex) {
+  for (films::FilmQuantity& quantity : complex.quantities) {
+    if (quantity.kind != films::FilmQuantity::Kind::BodyPoles) {
+      continue;
+    }
+    quantity.poles.clear();
+    for (films::SpineSampling& spine : complex.spines) {
+      if (spine.body != quantity.body) {
+        continue;
+      }
+      const films::SpineSpec& now = spine_named(system, spine.name);
+      spine = spines::sample_spine(now, spine.body, spine.beyond);
+      const std::vector<films::Pole> more = spines::poles_of(spine, now);
+      quantity.poles.insert(quantity.poles.end(), more.begin(), more.end());
+    }
+  }
+}
+
 std::vector<films::Pole> FilmModel::Impl::pole_rates(
     const films::FilmSystem& system, const films::FilmSystem& rates,
     std::size_t quantity) const {
@@ -312,7 +331,9 @@ void FilmModel::Impl::find_reference(const films::FilmSystem& initial,
     return;
   }
   if (options.start != nullptr && !initial.keep_facets) {
-    settle_reference(*options.start, options.edge, 0, initial, options, settle);
+    films::FilmComplex start = *options.start;
+    sample_spines(initial, start);
+    settle_reference(start, options.edge, 0, initial, options, settle);
     return;
   }
   const int halvings =
@@ -512,6 +533,7 @@ FilmModel FilmModel::refined(const settle::FilmState& state,
   const settle::SettleOptions settle{.monitor = monitor};
   auto impl = std::make_unique<Impl>();
   impl->complex = complex_at(state, system);
+  Impl::sample_spines(system, impl->complex);
   impl->meshed = impl->complex.mesh;
   impl->meshed_complex = impl->complex;
   impl->reference = state;

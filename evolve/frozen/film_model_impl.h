@@ -46,6 +46,10 @@ struct FilmModel::Impl {
   /// The poles of one of its quantities, of the spines of a design.
   std::vector<films::Pole> poles_of(const films::FilmSystem& system,
                                     std::size_t quantity) const;
+  /// The spines of a complex that another design left, sampled anew for this
+  /// one: their arms may be slimmer now.
+  static void sample_spines(const films::FilmSystem& system,
+                            films::FilmComplex& complex);
   std::vector<films::Pole> pole_rates(const films::FilmSystem& system,
                                       const films::FilmSystem& rates,
                                       std::size_t quantity) const;

@@ -21,7 +21,7 @@ namespace {
 
 using Node = std::array<int, 3>;  // of the lattice
 
-constexpr std::size_t kMostCells = 10'000'000;
+constexpr std::size_t kMostCells = 3'000'000;
 /// Crossings stay off a lattice edge's ends, so that no facet is without area.
 constexpr double kLeastShare = 0.05;
 

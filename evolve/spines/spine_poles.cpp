@@ -19,7 +19,7 @@ constexpr double kStrength =
     0.75 * (1.0 + kCore * kCore) * (1.0 + kCore * kCore);
 constexpr double kBeyond = 3.0;  // how far a spine goes on [radii]
 constexpr int kBeyondPoints = 6;
-constexpr int kMostPoints = 2000;  // of one spine
+constexpr double kMostPoints = 2000;  // of one spine
 
 /// Weights of the points of a curve at u in [0, count - 1]: a natural cubic
 /// through points one apart, a periodic one where it is closed, or straight
@@ -141,17 +141,25 @@ Place place_of(const films::SpineSample& sample,
 
 }  // namespace
 
+bool is_closed(const films::SpineSpec& spine) {
+  // Expressions of whole turns close to the last figures.
+  return spine.points.size() > 3 && !spine.radii.empty() &&
+         (spine.points.front() - spine.points.back()).norm() <
+             1e-6 * spine.radii.front();
+}
+
 films::SpineSampling sample_spine(const films::SpineSpec& spine, int body,
                                   const std::array<bool, 2>& beyond) {
   check_spine(spine);
   const auto count = static_cast<int>(spine.points.size());
-  // Rounding apart: expressions of whole turns close to the last figures.
-  const bool closed =
-      count > 3 && (spine.points.front() - spine.points.back()).norm() <
-                       1e-6 * spine.radii.front();
+  const bool closed = is_closed(spine);
   const PointWeights curve(count, spine.smooth, closed);
   const PointWeights radius(count, false, false);
-  films::SpineSampling result{spine.name, body, {}};
+  films::SpineSampling result{.name = spine.name,
+                              .body = body,
+                              .beyond = beyond,
+                              .closed = closed,
+                              .samples = {}};
   const auto add = [&](double u, double step, double past) {
     result.samples.push_back(
         {curve.value(u), curve.slope(u), radius.value(u), step, past});
@@ -168,7 +176,8 @@ films::SpineSampling sample_spine(const films::SpineSpec& spine, int body,
     const double least = std::min(spine.radii[k], spine.radii[k + 1]);
     const double length = (spine.points[k + 1] - spine.points[k]).norm();
     const double panels = std::ceil(length / (kPanel * least));
-    require(panels * kPanelPoints <= kMostPoints, spine.name,
+    const auto before = static_cast<double>(result.samples.size());
+    require(before + panels * kPanelPoints <= kMostPoints, spine.name,
             fmt::format("it is {:.3g} times as long as wide between points {} "
                         "and {}",
                         0.5 * length / least, k + 1, k + 2));
@@ -187,6 +196,8 @@ films::SpineSampling sample_spine(const films::SpineSpec& spine, int body,
 std::vector<films::Pole> poles_of(const films::SpineSampling& sampling,
                                   const films::SpineSpec& spine) {
   check_spine(spine);
+  require(is_closed(spine) == sampling.closed, spine.name,
+          "a design closes or opens it, which its model cannot follow");
   std::vector<films::Pole> poles;
   poles.reserve(sampling.samples.size());
   for (const films::SpineSample& sample : sampling.samples) {

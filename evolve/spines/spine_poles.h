@@ -31,8 +31,12 @@ inline constexpr double kCore = 0.7;  // c: of poles, over the radius
 films::SpineSampling sample_spine(const films::SpineSpec& spine, int body,
                                   const std::array<bool, 2>& beyond);
 
+/// Whether its last point is its first, but for rounding.
+bool is_closed(const films::SpineSpec& spine);
+
 /// The poles of a spine at a design: one per sample. Throws InvalidInput for
-/// other counts of points than the sampling's, and as sample_spine().
+/// other counts of points than the sampling's, for one that closes or opens,
+/// and as sample_spine().
 std::vector<films::Pole> poles_of(const films::SpineSampling& sampling,
                                   const films::SpineSpec& spine);
 

@@ -5,11 +5,13 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <set>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/math/union_find.h"
 #include "evolve/films/loft.h"
 #include "evolve/spines/isosurface.h"
 
@@ -148,6 +150,31 @@ std::vector<std::vector<int>> border_loops(const SurfaceMesh& mesh,
   return loops;
 }
 
+/// Throws InvalidInput for a piece without a rim beside another. The rims'
+/// points are the first `on_rims`.
+void require_one_piece(const SurfaceMesh& mesh, int on_rims,
+                       const std::string& film) {
+  UnionFind pieces(mesh.points.size());
+  for (const Triangle& t : mesh.facets) {
+    pieces.join(t[0], t[1]);
+    pieces.join(t[0], t[2]);
+  }
+  std::set<int> held;
+  for (int v = 0; v < on_rims; ++v) {
+    held.insert(pieces.root(v));
+  }
+  for (const Triangle& t : mesh.facets) {
+    if (!held.empty() && held.count(pieces.root(t[0])) == 0) {
+      const Vec3& p = mesh.points[t[0]];
+      throw InvalidInput(fmt::format(
+          "film '{}': the liquid of its spines near ({:.6g}, {:.6g}, {:.6g}) "
+          "hangs together with no rim; let its spine meet another, or end "
+          "within a rim",
+          film, p.x(), p.y(), p.z()));
+    }
+  }
+}
+
 Vec3 middle_of(const Points& points, const std::vector<int>& loop) {
   Vec3 sum = Vec3::Zero();
   for (const int v : loop) {
@@ -161,12 +188,14 @@ Vec3 middle_of(const Points& points, const std::vector<int>& loop) {
 std::array<int, 2> rims_at_ends(const films::SpineSpec& spine,
                                 const std::vector<SpineRim>& rims) {
   std::array<int, 2> result = {-1, -1};
-  for (int side = 0; side < 2 && !spine.points.empty(); ++side) {
+  for (int side = 0; side < 2 && !spine.points.empty() && !is_closed(spine);
+       ++side) {
     const Vec3& end = side == 0 ? spine.points.front() : spine.points.back();
     const double radius = side == 0 ? spine.radii.front() : spine.radii.back();
     for (std::size_t k = 0; k < rims.size(); ++k) {
       const RimPlane plane(rims[k].points);
-      if (std::abs((end - plane.middle).dot(plane.normal)) < kNear * radius &&
+      if (rims[k].bore < 0 &&
+          std::abs((end - plane.middle).dot(plane.normal)) < kNear * radius &&
           within(plane, rims[k].points, end)) {
         result[side] = static_cast<int>(k);
       }
@@ -177,7 +206,6 @@ std::array<int, 2> rims_at_ends(const films::SpineSpec& spine,
 
 SurfaceMesh spine_start(const std::vector<films::SpineSpec>& spines,
                         const std::vector<SpineRim>& rims,
-                        const std::vector<Bore>& bores,
                         const std::string& film) {
   // The field, the balls around it that have its level set, and the cuts at
   // rims.
@@ -185,6 +213,7 @@ SurfaceMesh spine_start(const std::vector<films::SpineSpec>& spines,
   std::vector<Ball> balls;
   std::vector<Cut> cuts;
   double least = std::numeric_limits<double>::infinity();
+  double most = 0.0;
   for (const films::SpineSpec& spine : spines) {
     const std::array<int, 2> at = rims_at_ends(spine, rims);
     const films::SpineSampling sampling =
@@ -215,15 +244,21 @@ SurfaceMesh spine_start(const std::vector<films::SpineSpec>& spines,
     }
   }
   for (const films::SpineSpec& spine : spines) {
-    least = std::min(least,
-                     *std::min_element(spine.radii.begin(), spine.radii.end()));
+    const auto [thin, thick] =
+        std::minmax_element(spine.radii.begin(), spine.radii.end());
+    least = std::min(least, *thin);
+    most = std::max(most, *thick);
   }
   std::vector<BoreCut> bore_cuts;
-  for (const Bore& bore : bores) {
-    bore_cuts.emplace_back(rims[bore[0]].points, rims[bore[1]].points);
-    for (const int rim : bore) {
-      const RimPlane plane(rims[rim].points);
-      cuts.push_back({rim, plane.middle, Vec3::Zero(), plane.radius});
+  for (std::size_t k = 0; k < rims.size(); ++k) {
+    if (rims[k].bore < 0) {
+      continue;
+    }
+    const RimPlane plane(rims[k].points);
+    cuts.push_back(
+        {static_cast<int>(k), plane.middle, Vec3::Zero(), plane.radius});
+    if (rims[k].bore > static_cast<int>(k)) {
+      bore_cuts.emplace_back(rims[k].points, rims[rims[k].bore].points);
     }
   }
   for (std::size_t k = 0; k < rims.size(); ++k) {
@@ -243,17 +278,26 @@ SurfaceMesh spine_start(const std::vector<films::SpineSpec>& spines,
     }
   }
   const double cell = kCell * least;
-  const SurfaceMesh level = isosurface(
-      [&](const Vec3& x) { return field.level(x); }, balls, cell,
-      [&](const Vec3& x) {
-        return std::any_of(cuts.begin(), cuts.end(),
-                           [&](const Cut& cut) {
-                             return cut.cuts(x, 0.5 * cell) &&
-                                    field.is_of(cut.spine, x);
-                           }) ||
-               std::any_of(bore_cuts.begin(), bore_cuts.end(),
-                           [&](const BoreCut& cut) { return cut.cuts(x); });
-      });
+  const SurfaceMesh level = [&] {
+    try {
+      return isosurface(
+          [&](const Vec3& x) { return field.level(x); }, balls, cell,
+          [&](const Vec3& x) {
+            return std::any_of(cuts.begin(), cuts.end(),
+                               [&](const Cut& cut) {
+                                 return cut.cuts(x, 0.5 * cell) &&
+                                        field.is_of(cut.spine, x);
+                               }) ||
+                   std::any_of(bore_cuts.begin(), bore_cuts.end(),
+                               [&](const BoreCut& cut) { return cut.cuts(x); });
+          });
+    } catch (const InvalidInput& error) {
+      throw InvalidInput(fmt::format(
+          "film '{}': radii of its spines run from {:.4g} to {:.4g}, and its "
+          "first facets are as fine everywhere as the thinnest arm asks: {}",
+          film, least, most, error.what()));
+    }
+  }();
   // The rims' points first, then those of the level set; each of its loops is
   // joined to the nearest cut's rim.
   SurfaceMesh result;
@@ -312,6 +356,7 @@ SurfaceMesh spine_start(const std::vector<films::SpineSpec>& spines,
     }
   }
   result.facet_label.assign(result.facets.size(), 0);
+  require_one_piece(result, shift, film);
   return result;
 }
 

@@ -11,24 +11,23 @@ namespace meniscus::spines {
 struct SpineRim {
   std::string curve;
   Points points;  // around it
+  /// Of one that a bore runs through to another rim: that one, by index.
+  int bore = -1;
 };
-
-/// Two rims between which a bore runs through the liquid, by index.
-using Bore = std::array<int, 2>;
 
 /// Per end of the spine: does it lie in a rim, so that the spine goes on beyond
 /// it? Where the rim's plane is less than half the spine's radius away and the
-/// end lies within the rim. The index of the rim, or -1.
+/// end lies within the rim, which is no bore's. The index of the rim, or -1; so
+/// of closed spines.
 std::array<int, 2> rims_at_ends(const films::SpineSpec& spine,
                                 const std::vector<SpineRim>& rims);
 
 /// Facets between the rims, whose points come first, in order. Their size is
 /// that of the thinnest spine. Throws InvalidInput for a rim at which no spine
 /// or more than one ends and which is no bore's (by name), and where the liquid
-/// at a rim is not one arm, or at a bore not a ring.
+/// at a rim is not one arm, at a bore not a ring, or in pieces.
 SurfaceMesh spine_start(const std::vector<films::SpineSpec>& spines,
                         const std::vector<SpineRim>& rims,
-                        const std::vector<Bore>& bores,
                         const std::string& film);
 
 }  // namespace meniscus::spines

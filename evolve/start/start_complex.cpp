@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <numeric>
 #include <set>
@@ -83,11 +84,14 @@ class StartBuilder {
     refuse_twins();
     add_bodies(raised);
     add_walls();
+    std::vector<films::FilmQuantity> poles = poles_of_bodies();
     cut_start(system_, edge_, result_);
     if (has_cuts(system_)) {
       close_wetted_faces(result_, edge_);
     }
     add_fields();
+    std::move(poles.begin(), poles.end(),
+              std::back_inserter(result_.quantities));
     const std::vector<double> tensions =
         energy::tensions_at(result_, result_.mesh.points);
     for (std::size_t s = 0; s < tensions.size(); ++s) {
@@ -310,6 +314,7 @@ class StartBuilder {
     for (const films::BodySpec& body : system_.bodies) {
       for (const films::SpineSpec& spine : system_.spines) {
         if (spine.body == body.name && body.is_enclosed_by(film.name)) {
+          require_only(film, body);
           own.push_back(spine);
         }
       }
@@ -324,34 +329,43 @@ class StartBuilder {
     for (const std::string& name : film.curves) {
       rims.push_back(rim_of(name, film.name));
     }
-    add_filling(
-        spines::spine_start(own, spine_rims(film), bores_of(film), film.name),
-        rims, label, films::VertexKind::Free);
+    add_filling(spines::spine_start(own, spine_rims(film), film.name), rims,
+                label, films::VertexKind::Free);
   }
 
-  /// Rings between two of the film's rims.
-  std::vector<spines::Bore> bores_of(const films::FilmSpec& film) const {
+  /// All of a body's spines make one film.
+  void require_only(const films::FilmSpec& film,
+                    const films::BodySpec& body) const {
+    for (const films::FilmSpec& other : system_.films) {
+      if (other.name != film.name && other.kind == films::FilmKind::Spines &&
+          body.is_enclosed_by(other.name)) {
+        throw InvalidInput(fmt::format(
+            "films '{}' and '{}' both start from the spines of body '{}'; let "
+            "one film have the curves of both",
+            film.name, other.name, body.name));
+      }
+    }
+  }
+
+  /// Those that a film ends at, as they begin; between two with a ring a bore.
+  std::vector<spines::SpineRim> spine_rims(const films::FilmSpec& film) {
+    std::vector<spines::SpineRim> rims;
+    for (const std::string& name : film.curves) {
+      rims.push_back({name, points_of(rim_of(name, film.name))});
+    }
     const auto number = [&](const std::string& curve) {
       const auto at = std::find(film.curves.begin(), film.curves.end(), curve);
       return at == film.curves.end()
                  ? -1
                  : static_cast<int>(at - film.curves.begin());
     };
-    std::vector<spines::Bore> bores;
     for (const films::CapSpec& cap : system_.caps) {
-      const spines::Bore bore = {number(cap.curve), number(cap.inner)};
-      if (!cap.inner.empty() && bore[0] >= 0 && bore[1] >= 0) {
-        bores.push_back(bore);
+      const int outer = cap.inner.empty() ? -1 : number(cap.curve);
+      const int inner = cap.inner.empty() ? -1 : number(cap.inner);
+      if (outer >= 0 && inner >= 0) {
+        rims[outer].bore = inner;
+        rims[inner].bore = outer;
       }
-    }
-    return bores;
-  }
-
-  /// Those that a film ends at, as they begin.
-  std::vector<spines::SpineRim> spine_rims(const films::FilmSpec& film) {
-    std::vector<spines::SpineRim> rims;
-    for (const std::string& name : film.curves) {
-      rims.push_back({name, points_of(rim_of(name, film.name))});
     }
     return rims;
   }
@@ -598,39 +612,59 @@ class StartBuilder {
       result_.quantities.push_back(energy::pressure_quantity(
           result_, spec.name, spec.body, spec.pressure));
     }
-    for (std::size_t b = 0; b < result_.bodies.size(); ++b) {
-      add_spines(static_cast<int>(b));
-    }
   }
 
-  /// The poles of a body's spines, which go on beyond the rims of its films.
-  void add_spines(int body) {
-    const std::string& name = result_.bodies[body].name;
-    std::vector<spines::SpineRim> rims;
-    for (const films::FilmSpec& film : system_.films) {
-      if (system_.bodies[body].is_enclosed_by(film.name)) {
-        const std::vector<spines::SpineRim> more = spine_rims(film);
-        rims.insert(rims.end(), more.begin(), more.end());
+  /// The poles of the bodies' spines, which go on beyond the rims of their
+  /// films. Planes have not cut these yet.
+  std::vector<films::FilmQuantity> poles_of_bodies() {
+    std::vector<films::FilmQuantity> result;
+    for (std::size_t b = 0; b < system_.bodies.size(); ++b) {
+      const films::BodySpec& body = system_.bodies[b];
+      films::FilmQuantity poles{fmt::format("spines of {}", body.name),
+                                films::FilmQuantity::Role::Energy,
+                                films::FilmQuantity::Kind::BodyPoles};
+      poles.body = static_cast<int>(b);
+      poles.modulus = -1.0;
+      std::vector<spines::SpineRim> rims;
+      for (const films::FilmSpec& film : system_.films) {
+        if (body.is_enclosed_by(film.name)) {
+          const std::vector<spines::SpineRim> more = spine_rims(film);
+          rims.insert(rims.end(), more.begin(), more.end());
+        }
+      }
+      for (const films::SpineSpec& spine : system_.spines) {
+        if (spine.body != body.name) {
+          continue;
+        }
+        require_no_wall(spine, body);
+        const std::array<int, 2> at = spines::rims_at_ends(spine, rims);
+        result_.spines.push_back(
+            spines::sample_spine(spine, poles.body, {at[0] >= 0, at[1] >= 0}));
+        const std::vector<films::Pole> more =
+            spines::poles_of(result_.spines.back(), spine);
+        poles.poles.insert(poles.poles.end(), more.begin(), more.end());
+      }
+      if (!poles.poles.empty()) {
+        result.push_back(std::move(poles));
       }
     }
-    films::FilmQuantity poles{fmt::format("spines of {}", name),
-                              films::FilmQuantity::Role::Energy,
-                              films::FilmQuantity::Kind::BodyPoles};
-    poles.body = body;
-    poles.modulus = -1.0;
-    for (const films::SpineSpec& spine : system_.spines) {
-      if (spine.body != name) {
-        continue;
+    return result;
+  }
+
+  /// A face that slides is open while its film is sought, and what lies beyond
+  /// a plane of symmetry presses too.
+  void require_no_wall(const films::SpineSpec& spine,
+                       const films::BodySpec& body) const {
+    for (const films::CapSpec& cap : system_.caps) {
+      if (cap.wall && body.is_enclosed_by(cap.name)) {
+        throw InvalidInput(fmt::format(
+            "spine '{}' holds body '{}', which ends at {} '{}'; spines are for "
+            "bodies without wetted faces and planes of symmetry: draw the "
+            "whole",
+            spine.name, body.name,
+            cap.wall->cuts ? "the plane of symmetry" : "the wetted face",
+            cap.name));
       }
-      const std::array<int, 2> at = spines::rims_at_ends(spine, rims);
-      result_.spines.push_back(
-          spines::sample_spine(spine, body, {at[0] >= 0, at[1] >= 0}));
-      const std::vector<films::Pole> more =
-          spines::poles_of(result_.spines.back(), spine);
-      poles.poles.insert(poles.poles.end(), more.begin(), more.end());
-    }
-    if (!poles.poles.empty()) {
-      result_.quantities.push_back(std::move(poles));
     }
   }
 

@@ -461,9 +461,12 @@ void check_arms(const Case& input, const EvaluatedCase& inputs,
           input.films[f].line,
           fmt::format("film '{}' is {:.3g} times as long as its radius, and a "
                       "liquid alone falls apart beyond 6.28; a spine holds it: "
-                      "[spines.{}] with points = [{}, {}], radius = [{:.4g}, "
-                      "{:.4g}]",
+                      "[spines.{}] with {}points = [{}, {}], radius = "
+                      "[{:.4g}, {:.4g}]",
                       film.name, length / radius, film.name,
+                      system.bodies.size() > 1
+                          ? fmt::format("body = \"{}\", ", body->name)
+                          : std::string(),
                       place(ends[0].first), place(ends[1].first),
                       ends[0].second, ends[1].second));
     }

@@ -44,7 +44,9 @@ SourceLine line_of_start(const Case& input, const std::string& message) {
     line = line == 0 && found != std::string::npos ? at : line;
   };
   for (const SpineEntry& spine : input.spines) {
-    look(spine.name, spine.line);
+    if (message.rfind("spine '" + spine.name + "'", 0) == 0) {
+      return spine.line;
+    }
   }
   for (const FilmEntry& film : input.films) {
     look(film.spec.name, film.line);

@@ -313,8 +313,8 @@ std::string tried_advice(const case_data::Case& input,
   const std::string tried =
       in_vain.empty() ? "" : "tried in vain: " + listed(in_vain) + "; ";
   return tried + (of_films ? "arms that pinch stand when each has liquid of "
-                             "its own: a cap at its waist, a body on either "
-                             "side (docs/arms.md)"
+                             "its own, a cap at its waist and a body on either "
+                             "side (docs/arms.md), or a spine (docs/spines.md)"
                            : "move or turn the curves there");
 }
 

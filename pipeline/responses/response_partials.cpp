@@ -475,6 +475,7 @@ void multiply(ResponsePartials& partials, double factor) {
   multiply_all(film.directions, factor);
   multiply_all(film.bends, factor);
   film.tensions *= factor;
+  multiply_all(film.numbers, factor);
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""PrusaSlicer's command line on the 3MF of the two-arm bracket: does it find
-one manifold part of the film's volume, and does it slice? Not part of the tests:
-a large package. Use: slice_3mf.py PROGRAM, from anywhere."""
+"""PrusaSlicer's command line on the 3MF of two brackets: does it find one manifold
+part of the film's volume, and does it slice? Not part of the tests: a large
+package. Use: slice_3mf.py PROGRAM, from anywhere."""
 import json
 import pathlib
 import re
@@ -9,7 +9,8 @@ import subprocess
 import sys
 import tempfile
 
-CASE = pathlib.Path(__file__).resolve().parents[2] / "cases/two_arm/case.toml"
+CASES = pathlib.Path(__file__).resolve().parents[2] / "cases"
+PARTS = ["two_arm", "ge_bracket"]
 LAYER = 0.3  # mm
 VOLUME = 1e-3  # relative
 
@@ -23,11 +24,10 @@ def call(*command):
     return done.stdout
 
 
-def main():
-    program = pathlib.Path(sys.argv[1]).resolve()
+def check(program, case):
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        call(program, "run", CASE, "--set", "study.kind=analyse",
+        call(program, "run", CASES / case / "case.toml", "--set", "study.kind=analyse",
              "--no-pictures", "--out", folder / "run")
         part = folder / "part.3mf"
         call(program, "export", folder / "run", "--format", "3mf", "--out",
@@ -43,7 +43,7 @@ def main():
              part)
         gcode = (folder / "part.gcode").read_text()
         tops = {float(z) for z in re.findall(r"^;Z:([\d.]+)$", gcode, re.M)}
-        print(f"PrusaSlicer: manifold {info['manifold']}, parts "
+        print(f"{case}: PrusaSlicer: manifold {info['manifold']}, parts "
               f"{info['number_of_parts']}, facets {info['number_of_facets']}, "
               f"height {info['size_z']} mm, volume off by {off:.1e}; sliced at "
               f"{LAYER} mm, top layer at {max(tops):g} mm")
@@ -51,6 +51,12 @@ def main():
                 abs(off) > VOLUME or
                 abs(max(tops) - float(info["size_z"])) > 2 * LAYER):
             sys.exit("PrusaSlicer finds another part")
+
+
+def main():
+    program = pathlib.Path(sys.argv[1]).resolve()
+    for case in PARTS:
+        check(program, case)
 
 
 if __name__ == "__main__":

@@ -126,6 +126,16 @@ class Spines(ProgramTest):
             math.pi * radius ** 2 * length * 7.85e-9,
             delta=0.01 * math.pi * radius ** 2 * length * 7.85e-9)
 
+    def test_a_datafile_of_spines_is_refused(self):
+        rims = {"low": circle("low", [0, 0, 0], [0, 0, -1], 10),
+                "high": circle("high", [0, 0, 50], [0, 0, 1], 10)}
+        self.run_case(part("A rod", rims,
+                           [spine("rod", [[0, 0, 0], [0, 0, 50]], 10)],
+                           resolution=8))
+        done = self.call("export", "case", "--format", "fe")
+        self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
+        self.assertIn("held by spines", done.stdout + done.stderr)
+
     def test_gradients_are_exact(self):
         (self.folder / "tree.toml").write_text(TREE)
         done = self.call("check-gradient", "tree.toml", timeout=300)
