@@ -27,6 +27,14 @@ Vec3 polygon_area_vector(const Points& rim) {
   return 0.5 * sum;
 }
 
+Vec3 mean_of(const Points& points) {
+  Vec3 sum = Vec3::Zero();
+  for (const Vec3& p : points) {
+    sum += p;
+  }
+  return sum / static_cast<double>(points.size());
+}
+
 double surface_area(const SurfaceMesh& mesh, int label) {
   double sum = 0.0;
   for (int f = 0; f < static_cast<int>(mesh.facets.size()); ++f) {

@@ -51,6 +51,9 @@ Vec3 area_vector2(const SurfaceMesh& mesh, int facet);
 /// counter-clockwise seen from the tip; of the shadow when not planar.
 Vec3 polygon_area_vector(const Points& rim);
 
+/// The mean of some points; there must be one.
+Vec3 mean_of(const Points& points);
+
 /// Sum of facet areas [length^2]; of one label when `label` is not negative.
 double surface_area(const SurfaceMesh& mesh, int label = -1);
 

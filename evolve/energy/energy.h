@@ -136,6 +136,10 @@ class FilmEnergy {
   template <class Each>
   void over_term(const FilmTerm& term, const Points& points, JetOrder order,
                  Numbers numbers, const Each& each) const;
+  /// Of those alone that are `wanted`.
+  template <class Wanted, class Each>
+  void over_term(const FilmTerm& term, const Points& points, JetOrder order,
+                 Numbers numbers, const Wanted& wanted, const Each& each) const;
   void add_term_gradients(const Points& points, int functional,
                           const std::vector<VectorX>& numbers,
                           Points& sum) const;

@@ -164,12 +164,18 @@ void FilmProducts::add_terms(const Points& points, const Points& motion,
     if (factor == 0.0) {
       continue;
     }
+    const auto motion_of = [&](const FilmTerm::Element& e) {
+      const Triangle& at = energy_.facets_[e.facet];
+      FilmTerm::Vector9 d;
+      d << motion[at[0]], motion[at[1]], motion[at[2]];
+      return d;
+    };
     energy_.over_term(
         *term, points, JetOrder::Hessian, numbers_of(*term, numbers_),
+        [&](const FilmTerm::Element& e) { return !motion_of(e).isZero(0.0); },
         [&](const FilmTerm::Element& e, const FacetJet& jet) {
           const Triangle& at = energy_.facets_[e.facet];
-          FilmTerm::Vector9 d;
-          d << motion[at[0]], motion[at[1]], motion[at[2]];
+          const FilmTerm::Vector9 d = motion_of(e);
           const FilmTerm::Vector9 product = factor * (jet.hessian * d);
           for (int i = 0; i < 3; ++i) {
             sum[at[i]] += product.segment<3>(3 * i);

@@ -18,16 +18,18 @@ inline Numbers numbers_of(const FilmTerm& term,
   return {numbers[q].data(), static_cast<std::size_t>(numbers[q].size())};
 }
 
-template <class Each>
+template <class Wanted, class Each>
 void FilmEnergy::over_term(const FilmTerm& term, const Points& points,
                            JetOrder order, Numbers numbers,
-                           const Each& each) const {
+                           const Wanted& wanted, const Each& each) const {
   const auto jet_of_element = [&](const FilmTerm::Element& e) {
     return term.jet(e, corners_of(points, facets_[e.facet]), order, numbers);
   };
   if (!term.has_numbers()) {  // cheap, and may throw
     for (const FilmTerm::Element& e : term.elements()) {
-      each(e, jet_of_element(e));
+      if (wanted(e)) {
+        each(e, jet_of_element(e));
+      }
     }
     return;
   }
@@ -40,12 +42,25 @@ void FilmEnergy::over_term(const FilmTerm& term, const Points& points,
         static_cast<std::ptrdiff_t>(std::min(kChunk, all.size() - first));
 #pragma omp parallel for schedule(static)
     for (std::ptrdiff_t k = 0; k < count; ++k) {
-      jets[k] = jet_of_element(all[first + k]);
+      if (wanted(all[first + k])) {
+        jets[k] = jet_of_element(all[first + k]);
+      }
     }
     for (std::ptrdiff_t k = 0; k < count; ++k) {
-      each(all[first + k], jets[k]);
+      if (wanted(all[first + k])) {
+        each(all[first + k], jets[k]);
+      }
     }
   }
+}
+
+template <class Each>
+void FilmEnergy::over_term(const FilmTerm& term, const Points& points,
+                           JetOrder order, Numbers numbers,
+                           const Each& each) const {
+  over_term(
+      term, points, order, numbers,
+      [](const FilmTerm::Element& /*e*/) { return true; }, each);
 }
 
 }  // namespace meniscus::energy

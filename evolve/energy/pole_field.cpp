@@ -217,9 +217,15 @@ std::span<const QuadraturePoint> rule_of(int rule) {
 class PoleTerm : public FilmTerm {
  public:
   PoleTerm(const SurfaceMesh& mesh, const std::vector<films::Pole>& poles,
-           const std::vector<Element>& elements) {
+           const std::vector<Element>& elements)
+      : rules_of_(mesh.facets.size(), -1) {
     starts_.push_back(0);
     for (const Element& e : elements) {
+      int& rules = rules_of_[e.facet];
+      if (rules >= 0) {
+        continue;  // between two bodies
+      }
+      rules = static_cast<int>(starts_.size()) - 1;
       const Corners c = corners_of(mesh.points, mesh.facets[e.facet]);
       const Vec3 middle = (c[0] + c[1] + c[2]) / 3.0;
       double size2 = 0.0;
@@ -247,7 +253,7 @@ class PoleTerm : public FilmTerm {
   FacetJet jet(const Element& element, const Corners& c, JetOrder order,
                Numbers numbers) const override {
     FacetJet sum;
-    over_rules(element, numbers, [&](int rule, std::span<const int> fours) {
+    over_rules(element, [&](int rule, std::span<const int> fours) {
       add_flux(
           rule_of(rule), element.sign, c, order,
           [&](const Vec3& at, JetOrder n) {
@@ -268,7 +274,7 @@ class PoleTerm : public FilmTerm {
     for (int i = 0; i < 3; ++i) {
       turn += n.slope[i] * motion[i];
     }
-    over_places(element, numbers, [&](const QuadraturePoint& q, int four) {
+    over_places(element, [&](const QuadraturePoint& q, int four) {
       const double w = 0.5 * factor * element.sign * q.weight;
       add_four(numbers, kLanes * four, q.at(c), w * turn, w * n.normal,
                q.at(motion), sum);
@@ -279,7 +285,7 @@ class PoleTerm : public FilmTerm {
                             double factor, Numbers numbers,
                             VectorX& sum) const override {
     const NormalJet n(c);
-    over_places(element, numbers, [&](const QuadraturePoint& q, int four) {
+    over_places(element, [&](const QuadraturePoint& q, int four) {
       const double w = 0.5 * factor * element.sign * q.weight;
       add_four(numbers, kLanes * four, q.at(c), w * n.normal, Vec3::Zero(),
                Vec3::Zero(), sum);
@@ -290,7 +296,7 @@ class PoleTerm : public FilmTerm {
                         Numbers numbers, Numbers rates) const override {
     const NormalJet n(c);
     Vector9 sum = Vector9::Zero();
-    over_places(element, numbers, [&](const QuadraturePoint& q, int four) {
+    over_places(element, [&](const QuadraturePoint& q, int four) {
       const double w = 0.5 * element.sign * q.weight;
       FieldJet f;
       add_four_rates(numbers, rates, kLanes * four, q.at(c), f);
@@ -311,20 +317,11 @@ class PoleTerm : public FilmTerm {
                                                                : 2;
   }
 
-  /// each(rule, fours of poles) where there are some. Of an element that the
-  /// term was not made with all are near.
+  /// each(rule, fours of poles) where there are some.
   template <class Each>
-  void over_rules(const Element& element, Numbers numbers,
-                  const Each& each) const {
-    const std::ptrdiff_t at = &element - elements_.data();
-    if (elements_.empty() || at < 0 || at >= std::ssize(elements_)) {
-      std::vector<int> all(pole_count(numbers) / kLanes);
-      std::iota(all.begin(), all.end(), 0);
-      each(0, std::span<const int>(all));
-      return;
-    }
-    for (int rule = 0; rule < kRules; ++rule) {
-      const std::ptrdiff_t* start = &starts_[kRules * at + rule];
+  void over_rules(const Element& element, const Each& each) const {
+    const std::ptrdiff_t* start = &starts_[rules_of_[element.facet]];
+    for (int rule = 0; rule < kRules; ++rule, ++start) {
       if (start[0] < start[1]) {
         each(rule, std::span<const int>(fours_.data() + start[0],
                                         fours_.data() + start[1]));
@@ -334,9 +331,8 @@ class PoleTerm : public FilmTerm {
 
   /// each(quadrature point, four of poles).
   template <class Each>
-  void over_places(const Element& element, Numbers numbers,
-                   const Each& each) const {
-    over_rules(element, numbers, [&](int rule, std::span<const int> fours) {
+  void over_places(const Element& element, const Each& each) const {
+    over_rules(element, [&](int rule, std::span<const int> fours) {
       for (const int four : fours) {
         for (const QuadraturePoint& q : rule_of(rule)) {
           each(q, four);
@@ -345,7 +341,8 @@ class PoleTerm : public FilmTerm {
     });
   }
 
-  std::vector<std::ptrdiff_t> starts_;  // per element and rule
+  std::vector<int> rules_of_;           // per facet: into starts_; -1: none
+  std::vector<std::ptrdiff_t> starts_;  // of its rules, into fours_
   std::vector<int> fours_;              // of poles
 };
 

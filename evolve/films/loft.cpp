@@ -12,14 +12,6 @@ namespace meniscus::films {
 
 namespace {
 
-Vec3 centre_of(const Points& points) {
-  Vec3 sum = Vec3::Zero();
-  for (const Vec3& p : points) {
-    sum += p;
-  }
-  return sum / static_cast<double>(points.size());
-}
-
 // Share of the length from point 0 to each point, and 1 at the end.
 std::vector<double> shares(const Points& points) {
   std::vector<double> along = {0.0};
@@ -75,8 +67,8 @@ struct Walk {
 Walk matched_walk(const Points& low, const std::vector<double>& low_along,
                   const Points& high) {
   const int m = static_cast<int>(high.size());
-  const Vec3 low_centre = centre_of(low);
-  const Vec3 high_centre = centre_of(high);
+  const Vec3 low_centre = mean_of(low);
+  const Vec3 high_centre = mean_of(high);
   const Vec3 low_area = polygon_area_vector(low);
   const Vec3 high_area = polygon_area_vector(high);
   const bool forward = same_way(low_area, high_area, high_centre - low_centre);

@@ -11,6 +11,7 @@
 #include "evolve/frozen/film_margin.h"
 #include "evolve/frozen/film_model_impl.h"
 #include "evolve/frozen/film_radius.h"
+#include "evolve/spines/spine_poles.h"
 
 namespace meniscus::frozen {
 
@@ -159,6 +160,15 @@ std::vector<Points> FilmModel::tangents(
   return result;
 }
 
+/// How fast the numbers of a quantity's poles change.
+VectorX FilmModel::Impl::pole_rates(const films::FilmSystem& system,
+                                    const films::FilmSystem& rates,
+                                    std::size_t quantity) const {
+  return energy::pole_rate_numbers(
+      spines::pole_rates(complex.spines, complex.quantities[quantity].body,
+                         system.spines, rates.spines));
+}
+
 FilmAdjoint::Rates FilmModel::Impl::rates_of(
     const films::FilmSystem& system, const films::FilmSystem& rates) const {
   const auto bodies = static_cast<Eigen::Index>(complex.bodies.size());
@@ -206,8 +216,7 @@ FilmAdjoint::Rates FilmModel::Impl::rates_of(
   for (std::size_t q = 0; q < complex.quantities.size(); ++q) {
     result.numbers.emplace_back();
     if (complex.quantities[q].kind == films::FilmQuantity::Kind::BodyPoles) {
-      result.numbers.back() =
-          energy::pole_rate_numbers(pole_rates(system, rates, q));
+      result.numbers.back() = pole_rates(system, rates, q);
     }
   }
   for (Eigen::Index b = 0; b < bodies; ++b) {
@@ -247,8 +256,7 @@ double FilmModel::rate(const FilmGradient& gradient,
   }
   for (std::size_t q = 0; q < gradient.numbers.size(); ++q) {
     if (gradient.numbers[q].size() > 0) {
-      sum += gradient.numbers[q].dot(
-          energy::pole_rate_numbers(impl_->pole_rates(system, rates, q)));
+      sum += gradient.numbers[q].dot(impl_->pole_rates(system, rates, q));
     }
   }
   for (std::size_t b = 0; b < impl_->complex.bodies.size(); ++b) {

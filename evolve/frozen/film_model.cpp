@@ -107,18 +107,6 @@ void check_numbers(const films::FilmSystem& system) {
   }
 }
 
-const films::SpineSpec& spine_named(const films::FilmSystem& system,
-                                    const std::string& name) {
-  const auto spine =
-      std::find_if(system.spines.begin(), system.spines.end(),
-                   [&](const films::SpineSpec& s) { return s.name == name; });
-  if (spine == system.spines.end()) {
-    throw InvalidInput(
-        fmt::format("the design has no spine '{}', which its model has", name));
-  }
-  return *spine;
-}
-
 std::string no_value(const ExpressionError& error) {
   return fmt::format(
       "a field, or a tension (it must be above 0), has no value where the film "
@@ -235,50 +223,19 @@ void FilmModel::Impl::check_fields(const films::FilmSystem& system) const {
 
 std::vector<films::Pole> FilmModel::Impl::poles_of(
     const films::FilmSystem& system, std::size_t quantity) const {
-  std::vector<films::Pole> poles;
-  for (const films::SpineSampling& spine : complex.spines) {
-    if (spine.body != complex.quantities[quantity].body) {
-      continue;
-    }
-    const std::vector<films::Pole> more =
-        spines::poles_of(spine, spine_named(system, spine.name));
-    poles.insert(poles.end(), more.begin(), more.end());
-  }
-  return poles;
+  return spines::poles_of(complex.spines, complex.quantities[quantity].body,
+                          system.spines);
 }
 
 void FilmModel::Impl::sample_spines(const films::FilmSystem& system,
                                     films::FilmComplex& complex) {
+  spines::sample_again(system.spines, complex.spines);
   for (films::FilmQuantity& quantity : complex.quantities) {
-    if (quantity.kind != films::FilmQuantity::Kind::BodyPoles) {
-      continue;
-    }
-    quantity.poles.clear();
-    for (films::SpineSampling& spine : complex.spines) {
-      if (spine.body != quantity.body) {
-        continue;
-      }
-      const films::SpineSpec& now = spine_named(system, spine.name);
-      spine = spines::sample_spine(now, spine.body, spine.beyond);
-      const std::vector<films::Pole> more = spines::poles_of(spine, now);
-      quantity.poles.insert(quantity.poles.end(), more.begin(), more.end());
+    if (quantity.kind == films::FilmQuantity::Kind::BodyPoles) {
+      quantity.poles =
+          spines::poles_of(complex.spines, quantity.body, system.spines);
     }
   }
-}
-
-std::vector<films::Pole> FilmModel::Impl::pole_rates(
-    const films::FilmSystem& system, const films::FilmSystem& rates,
-    std::size_t quantity) const {
-  std::vector<films::Pole> poles;
-  for (const films::SpineSampling& spine : complex.spines) {
-    if (spine.body != complex.quantities[quantity].body) {
-      continue;
-    }
-    const std::vector<films::Pole> more = spines::pole_rates(
-        spine, spine_named(system, spine.name), spine_named(rates, spine.name));
-    poles.insert(poles.end(), more.begin(), more.end());
-  }
-  return poles;
 }
 
 std::vector<curves::Curve> FilmModel::Impl::curves_of_system(

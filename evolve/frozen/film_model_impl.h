@@ -50,9 +50,9 @@ struct FilmModel::Impl {
   /// one: their arms may be slimmer now.
   static void sample_spines(const films::FilmSystem& system,
                             films::FilmComplex& complex);
-  std::vector<films::Pole> pole_rates(const films::FilmSystem& system,
-                                      const films::FilmSystem& rates,
-                                      std::size_t quantity) const;
+  VectorX pole_rates(const films::FilmSystem& system,
+                     const films::FilmSystem& rates,
+                     std::size_t quantity) const;
   std::vector<curves::Curve> curves_of_system(
       const films::FilmSystem& system) const;
   void find_reference(const films::FilmSystem& initial,

@@ -139,6 +139,33 @@ Place place_of(const films::SpineSample& sample,
   return p;
 }
 
+const films::SpineSpec& spine_named(const std::vector<films::SpineSpec>& spines,
+                                    const std::string& name) {
+  const auto spine =
+      std::find_if(spines.begin(), spines.end(),
+                   [&](const films::SpineSpec& s) { return s.name == name; });
+  if (spine == spines.end()) {
+    throw InvalidInput(
+        fmt::format("the design has no spine '{}', which its model has", name));
+  }
+  return *spine;
+}
+
+/// `of_spine`: a sampling -> its poles.
+template <class OfSpine>
+std::vector<films::Pole> poles_of_body(
+    const std::vector<films::SpineSampling>& samplings, int body,
+    const OfSpine& of_spine) {
+  std::vector<films::Pole> poles;
+  for (const films::SpineSampling& sampling : samplings) {
+    if (sampling.body == body) {
+      const std::vector<films::Pole> more = of_spine(sampling);
+      poles.insert(poles.end(), more.begin(), more.end());
+    }
+  }
+  return poles;
+}
+
 }  // namespace
 
 bool is_closed(const films::SpineSpec& spine) {
@@ -238,6 +265,32 @@ std::vector<films::Pole> pole_rates(const films::SpineSampling& sampling,
     result.push_back(rate);
   }
   return result;
+}
+
+std::vector<films::Pole> poles_of(
+    const std::vector<films::SpineSampling>& samplings, int body,
+    const std::vector<films::SpineSpec>& spines) {
+  return poles_of_body(samplings, body, [&](const auto& sampling) {
+    return poles_of(sampling, spine_named(spines, sampling.name));
+  });
+}
+
+std::vector<films::Pole> pole_rates(
+    const std::vector<films::SpineSampling>& samplings, int body,
+    const std::vector<films::SpineSpec>& spines,
+    const std::vector<films::SpineSpec>& rates) {
+  return poles_of_body(samplings, body, [&](const auto& sampling) {
+    return pole_rates(sampling, spine_named(spines, sampling.name),
+                      spine_named(rates, sampling.name));
+  });
+}
+
+void sample_again(const std::vector<films::SpineSpec>& spines,
+                  std::vector<films::SpineSampling>& samplings) {
+  for (films::SpineSampling& sampling : samplings) {
+    sampling = sample_spine(spine_named(spines, sampling.name), sampling.body,
+                            sampling.beyond);
+  }
 }
 
 }  // namespace meniscus::spines

@@ -45,6 +45,20 @@ std::vector<films::Pole> pole_rates(const films::SpineSampling& sampling,
                                     const films::SpineSpec& spine,
                                     const films::SpineSpec& rates);
 
+/// The same of all spines of one body, in the order of `samplings`; the specs
+/// by their names. Throws InvalidInput also for a name that is not among them.
+std::vector<films::Pole> poles_of(
+    const std::vector<films::SpineSampling>& samplings, int body,
+    const std::vector<films::SpineSpec>& spines);
+std::vector<films::Pole> pole_rates(
+    const std::vector<films::SpineSampling>& samplings, int body,
+    const std::vector<films::SpineSpec>& spines,
+    const std::vector<films::SpineSpec>& rates);
+
+/// The spines sampled anew for a design, where they go on beyond as before.
+void sample_again(const std::vector<films::SpineSpec>& spines,
+                  std::vector<films::SpineSampling>& samplings);
+
 /// What a pole adds to the level whose surface, at 1, is the film of a straight
 /// spine of any radius.
 inline double level_at(const films::Pole& pole, double tension, const Vec3& x) {

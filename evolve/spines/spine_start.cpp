@@ -26,14 +26,11 @@ constexpr double kReach = 3.0;  // of what a rim cuts off [radii]
 
 /// The middle of a rim and its vector area.
 struct RimPlane {
-  Vec3 middle = Vec3::Zero();
+  Vec3 middle;
   Vec3 normal = Vec3::Zero();  // unit
   double radius = 0.0;         // of a circle of its area
 
-  explicit RimPlane(const Points& points) {
-    for (const Vec3& p : points) {
-      middle += p / static_cast<double>(points.size());
-    }
+  explicit RimPlane(const Points& points) : middle(mean_of(points)) {
     const Vec3 area = polygon_area_vector(points);
     radius = std::sqrt(area.norm() / std::numbers::pi);
     normal = area.normalized();
@@ -175,12 +172,118 @@ void require_one_piece(const SurfaceMesh& mesh, int on_rims,
   }
 }
 
-Vec3 middle_of(const Points& points, const std::vector<int>& loop) {
-  Vec3 sum = Vec3::Zero();
-  for (const int v : loop) {
-    sum += points[v] / static_cast<double>(loop.size());
+/// What the spines of a film make at its rims.
+struct SpineSite {
+  SpineField field;
+  std::vector<Ball> balls;  // about the spines
+  std::vector<Cut> cuts;    // one per rim
+  std::vector<BoreCut> bores;
+  double thinnest = std::numeric_limits<double>::infinity();
+  double thickest = 0.0;
+
+  bool is_left_out(const Vec3& x, double before) const {
+    return std::any_of(cuts.begin(), cuts.end(),
+                       [&](const Cut& cut) {
+                         return cut.cuts(x, before) &&
+                                field.is_of(cut.spine, x);
+                       }) ||
+           std::any_of(bores.begin(), bores.end(),
+                       [&](const BoreCut& cut) { return cut.cuts(x); });
   }
-  return sum;
+
+  void add_spine(const films::SpineSpec& spine,
+                 const std::vector<SpineRim>& rims, int number) {
+    const std::array<int, 2> at = rims_at_ends(spine, rims);
+    const films::SpineSampling sampling =
+        sample_spine(spine, 0, {at[0] >= 0, at[1] >= 0});
+    const std::vector<films::Pole> poles = poles_of(sampling, spine);
+    for (std::size_t k = 0; k < poles.size(); ++k) {
+      field.poles.push_back(poles[k]);
+      field.tension.push_back(spine.tension);
+      field.spine.push_back(number);
+      if (sampling.samples[k].beyond == 0.0) {
+        balls.push_back(
+            {poles[k].at, kBall / kCore * std::sqrt(poles[k].core2)});
+      }
+    }
+    const std::size_t last = spine.points.size() - 1;
+    for (int side = 0; side < 2; ++side) {
+      if (at[side] < 0) {
+        continue;
+      }
+      const std::size_t end = side == 0 ? 0 : last;
+      const Vec3 way =
+          spine.points[end] - spine.points[side == 0 ? 1 : last - 1];
+      const Vec3 normal = RimPlane(rims[at[side]].points).normal;
+      cuts.push_back({at[side], spine.points[end],
+                      way.dot(normal) > 0.0 ? normal : Vec3(-normal),
+                      spine.radii[end], number});
+    }
+    const auto [thin, thick] =
+        std::minmax_element(spine.radii.begin(), spine.radii.end());
+    thinnest = std::min(thinnest, *thin);
+    thickest = std::max(thickest, *thick);
+  }
+
+  void add_bores(const std::vector<SpineRim>& rims) {
+    for (std::size_t k = 0; k < rims.size(); ++k) {
+      if (rims[k].bore < 0) {
+        continue;
+      }
+      const RimPlane plane(rims[k].points);
+      cuts.push_back(
+          {static_cast<int>(k), plane.middle, Vec3::Zero(), plane.radius});
+      if (rims[k].bore > static_cast<int>(k)) {
+        bores.emplace_back(rims[k].points, rims[rims[k].bore].points);
+      }
+    }
+  }
+};
+
+void require_one_cut_each(const SpineSite& site,
+                          const std::vector<SpineRim>& rims,
+                          const std::string& film) {
+  for (std::size_t k = 0; k < rims.size(); ++k) {
+    const auto count = std::count_if(
+        site.cuts.begin(), site.cuts.end(),
+        [&](const Cut& c) { return c.rim == static_cast<int>(k); });
+    if (count != 1) {
+      throw InvalidInput(fmt::format(
+          "film '{}': {} its curve '{}'; let one spine end within it, less "
+          "than half its radius from its plane, or make it the rim of a bore "
+          "by a solid of kind ring",
+          film,
+          count == 0 ? std::string("no spine ends at")
+                     : fmt::format("{} spines end at", count),
+          rims[k].curve));
+    }
+  }
+}
+
+SurfaceMesh level_set(const SpineSite& site, const std::string& film) {
+  const double cell = kCell * site.thinnest;
+  try {
+    return isosurface(
+        [&](const Vec3& x) { return site.field.level(x); }, site.balls, cell,
+        [&](const Vec3& x) { return site.is_left_out(x, 0.5 * cell); });
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(fmt::format(
+        "film '{}': radii of its spines run from {:.4g} to {:.4g}, and its "
+        "first facets are as fine everywhere as the thinnest arm asks: {}",
+        film, site.thinnest, site.thickest, error.what()));
+  }
+}
+
+/// The cut that a loop of the level set's border is at; none where there is
+/// none near.
+std::size_t nearest_cut(const std::vector<Cut>& cuts, const Vec3& middle) {
+  const auto nearest = std::min_element(
+      cuts.begin(), cuts.end(), [&](const Cut& a, const Cut& b) {
+        return (a.at - middle).norm() < (b.at - middle).norm();
+      });
+  const bool near = nearest != cuts.end() &&
+                    (nearest->at - middle).norm() <= kReach * nearest->radius;
+  return near ? static_cast<std::size_t>(nearest - cuts.begin()) : cuts.size();
 }
 
 }  // namespace
@@ -207,99 +310,14 @@ std::array<int, 2> rims_at_ends(const films::SpineSpec& spine,
 SurfaceMesh spine_start(const std::vector<films::SpineSpec>& spines,
                         const std::vector<SpineRim>& rims,
                         const std::string& film) {
-  // The field, the balls around it that have its level set, and the cuts at
-  // rims.
-  SpineField field;
-  std::vector<Ball> balls;
-  std::vector<Cut> cuts;
-  double least = std::numeric_limits<double>::infinity();
-  double most = 0.0;
-  for (const films::SpineSpec& spine : spines) {
-    const std::array<int, 2> at = rims_at_ends(spine, rims);
-    const films::SpineSampling sampling =
-        sample_spine(spine, 0, {at[0] >= 0, at[1] >= 0});
-    const std::vector<films::Pole> poles = poles_of(sampling, spine);
-    for (std::size_t k = 0; k < poles.size(); ++k) {
-      field.poles.push_back(poles[k]);
-      field.tension.push_back(spine.tension);
-      field.spine.push_back(static_cast<int>(&spine - spines.data()));
-      if (sampling.samples[k].beyond == 0.0) {
-        balls.push_back(
-            {poles[k].at, kBall / kCore * std::sqrt(poles[k].core2)});
-      }
-    }
-    for (int side = 0; side < 2; ++side) {
-      const std::size_t n = spine.points.size();
-      const double radius = side == 0 ? spine.radii[0] : spine.radii[n - 1];
-      least = std::min(least, radius);
-      if (at[side] < 0) {
-        continue;
-      }
-      const RimPlane plane(rims[at[side]].points);
-      const Vec3& end = side == 0 ? spine.points[0] : spine.points[n - 1];
-      const Vec3& before = side == 0 ? spine.points[1] : spine.points[n - 2];
-      const double sign = (end - before).dot(plane.normal) > 0.0 ? 1.0 : -1.0;
-      cuts.push_back({at[side], end, sign * plane.normal, radius,
-                      static_cast<int>(&spine - spines.data())});
-    }
+  SpineSite site;
+  for (std::size_t k = 0; k < spines.size(); ++k) {
+    site.add_spine(spines[k], rims, static_cast<int>(k));
   }
-  for (const films::SpineSpec& spine : spines) {
-    const auto [thin, thick] =
-        std::minmax_element(spine.radii.begin(), spine.radii.end());
-    least = std::min(least, *thin);
-    most = std::max(most, *thick);
-  }
-  std::vector<BoreCut> bore_cuts;
-  for (std::size_t k = 0; k < rims.size(); ++k) {
-    if (rims[k].bore < 0) {
-      continue;
-    }
-    const RimPlane plane(rims[k].points);
-    cuts.push_back(
-        {static_cast<int>(k), plane.middle, Vec3::Zero(), plane.radius});
-    if (rims[k].bore > static_cast<int>(k)) {
-      bore_cuts.emplace_back(rims[k].points, rims[rims[k].bore].points);
-    }
-  }
-  for (std::size_t k = 0; k < rims.size(); ++k) {
-    const auto count = std::count_if(
-        cuts.begin(), cuts.end(),
-        [&](const Cut& c) { return c.rim == static_cast<int>(k); });
-    if (count != 1) {
-      throw InvalidInput(fmt::format(
-          "film '{}': {} its curve '{}'; let one spine end within it, less "
-          "than "
-          "half its radius from its plane, or make it the rim of a bore by a "
-          "solid of kind ring",
-          film,
-          count == 0 ? std::string("no spine ends at")
-                     : fmt::format("{} spines end at", count),
-          rims[k].curve));
-    }
-  }
-  const double cell = kCell * least;
-  const SurfaceMesh level = [&] {
-    try {
-      return isosurface(
-          [&](const Vec3& x) { return field.level(x); }, balls, cell,
-          [&](const Vec3& x) {
-            return std::any_of(cuts.begin(), cuts.end(),
-                               [&](const Cut& cut) {
-                                 return cut.cuts(x, 0.5 * cell) &&
-                                        field.is_of(cut.spine, x);
-                               }) ||
-                   std::any_of(bore_cuts.begin(), bore_cuts.end(),
-                               [&](const BoreCut& cut) { return cut.cuts(x); });
-          });
-    } catch (const InvalidInput& error) {
-      throw InvalidInput(fmt::format(
-          "film '{}': radii of its spines run from {:.4g} to {:.4g}, and its "
-          "first facets are as fine everywhere as the thinnest arm asks: {}",
-          film, least, most, error.what()));
-    }
-  }();
-  // The rims' points first, then those of the level set; each of its loops is
-  // joined to the nearest cut's rim.
+  site.add_bores(rims);
+  require_one_cut_each(site, rims, film);
+  const SurfaceMesh level = level_set(site, film);
+  // The rims' points first, then those of the level set.
   SurfaceMesh result;
   result.labels = {film};
   std::vector<int> first;
@@ -314,45 +332,39 @@ SurfaceMesh spine_start(const std::vector<films::SpineSpec>& spines,
   for (const Triangle& t : level.facets) {
     result.facets.push_back({t[0] + shift, t[1] + shift, t[2] + shift});
   }
-  std::vector<char> joined(cuts.size(), 0);
+  // A band from each loop of the border to the rim of the nearest cut.
+  std::vector<char> joined(site.cuts.size() + 1, 0);
+  joined.back() = 1;  // none
   for (const std::vector<int>& loop : border_loops(level, film)) {
-    const Vec3 middle = middle_of(level.points, loop);
-    std::size_t nearest = 0;
-    for (std::size_t k = 1; k < cuts.size(); ++k) {
-      if ((cuts[k].at - middle).norm() < (cuts[nearest].at - middle).norm()) {
-        nearest = k;
-      }
-    }
-    if (cuts.empty() || joined[nearest] != 0 ||
-        (cuts[nearest].at - middle).norm() > kReach * cuts[nearest].radius) {
-      throw InvalidInput(fmt::format(
-          "film '{}': the arms of its spines do not close near ({:.6g}, "
-          "{:.6g}, "
-          "{:.6g}); arms that are thin beside others, or that meet a rim from "
-          "the side, need a point more",
-          film, middle.x(), middle.y(), middle.z()));
-    }
-    joined[nearest] = 1;
-    const int rim = cuts[nearest].rim;
     Points low;
     for (const int v : loop) {
       low.push_back(level.points[v]);
     }
+    const Vec3 middle = mean_of(low);
+    const std::size_t cut = nearest_cut(site.cuts, middle);
+    if (joined[cut] != 0) {
+      throw InvalidInput(fmt::format(
+          "film '{}': the arms of its spines do not close near ({:.6g}, "
+          "{:.6g}, {:.6g}); arms that are thin beside others, or that meet a "
+          "rim from the side, need a point more",
+          film, middle.x(), middle.y(), middle.z()));
+    }
+    joined[cut] = 1;
+    const int rim = site.cuts[cut].rim;
+    const auto count = static_cast<int>(low.size());
     for (Triangle t : films::loft_band(low, rims[rim].points)) {
       for (int& v : t) {
-        v = v < static_cast<int>(low.size())
-                ? loop[v] + shift
-                : first[rim] + v - static_cast<int>(low.size());
+        v = v < count ? loop[v] + shift : first[rim] + v - count;
       }
       // The band runs along the loop as the facets there do: the other way.
       result.facets.push_back({t[0], t[2], t[1]});
     }
   }
-  for (std::size_t k = 0; k < cuts.size(); ++k) {
+  for (std::size_t k = 0; k < site.cuts.size(); ++k) {
     if (joined[k] == 0) {
       throw InvalidInput(
           fmt::format("film '{}': its spines' liquid does not reach curve '{}'",
-                      film, rims[cuts[k].rim].curve));
+                      film, rims[site.cuts[k].rim].curve));
     }
   }
   result.facet_label.assign(result.facets.size(), 0);

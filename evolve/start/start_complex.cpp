@@ -640,10 +640,9 @@ class StartBuilder {
         const std::array<int, 2> at = spines::rims_at_ends(spine, rims);
         result_.spines.push_back(
             spines::sample_spine(spine, poles.body, {at[0] >= 0, at[1] >= 0}));
-        const std::vector<films::Pole> more =
-            spines::poles_of(result_.spines.back(), spine);
-        poles.poles.insert(poles.poles.end(), more.begin(), more.end());
       }
+      poles.poles =
+          spines::poles_of(result_.spines, poles.body, system_.spines);
       if (!poles.poles.empty()) {
         result.push_back(std::move(poles));
       }

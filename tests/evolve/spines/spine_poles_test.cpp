@@ -154,21 +154,28 @@ TEST(SpinePoles, TermsKnowTheirNumbers) {
   const auto draw = [&] {
     return Vec3(normal(engine), normal(engine), normal(engine));
   };
-  const auto term = energy::pole_term({}, {}, {});
   for (int trial = 0; trial < 10; ++trial) {
     const films::SpineSpec spine = random_spine(engine, 3, true);
     const auto sampling = spines::sample_spine(spine, 0, {true, false});
-    const VectorX numbers =
-        energy::pole_numbers(spines::poles_of(sampling, spine));
+    const std::vector<films::Pole> poles = spines::poles_of(sampling, spine);
+    const VectorX numbers = energy::pole_numbers(poles);
     VectorX rates = VectorX::Zero(numbers.size());
     for (Eigen::Index k = 0; k < rates.size(); ++k) {
       rates[k] = normal(engine);
     }
-    const energy::FilmTerm::Corners corner = {draw(), draw(), draw()};
+    // Facets of all sizes, so that every rule has poles.
+    const double size = std::pow(10.0, -(trial % 3));
+    const Vec3 middle = draw();
+    const energy::FilmTerm::Corners corner = {
+        middle + size * draw(), middle + size * draw(), middle + size * draw()};
     const energy::FilmTerm::Corners motion = {draw(), draw(), draw()};
     Eigen::Matrix<double, 9, 1> d;
     d << motion[0], motion[1], motion[2];
     const energy::FilmTerm::Element element{0, -0.7, 0};
+    SurfaceMesh mesh;
+    mesh.points = {corner[0], corner[1], corner[2]};
+    mesh.facets = {{0, 1, 2}};
+    const auto term = energy::pole_term(mesh, poles, {element});
     const auto jet = [&](double t) {
       const VectorX now = numbers + t * rates;
       return term->jet(element, corner, JetOrder::Gradient, span_of(now));
