@@ -13,6 +13,7 @@
 #include "evolve/groom/junctions.h"
 #include "evolve/groom/refine.h"
 #include "evolve/groom/remesh.h"
+#include "evolve/groom/rough_films.h"
 #include "evolve/settle/bring_near.h"
 #include "evolve/settle/contacts.h"
 #include "evolve/settle/neck.h"
@@ -179,14 +180,31 @@ FilmState settle_finer(Chain& chain, films::FilmComplex& complex,
   groom::Refinement finer = groom::refine(complex);
   groom::bend_midpoints(coarse.space(), complex.mesh.points, finer);
   complex = std::move(finer.complex);
+  if (complex.mesh.facets.size() <= kDirect &&
+      groom::even_out(complex, groom::EvenOut::Flips)) {
+    chain = Chain();  // the coarse levels have other facets
+    finer.parents.clear();
+  }
   chain.add(complex, std::move(finer.parents));
   const energy::FilmEnergy& energy = *chain.energies.back();
   const films::FilmTargets targets = energy::targets_of(complex);
   const bool direct =
       complex.mesh.facets.size() <= kDirect || chain.levels.size() < 2;
   const auto settle_directly = [&] {
-    FilmState found = settle_or_follow(complex, state.report.smallest_neck,
-                                       options.settle, steps);
+    const auto settle_now = [&] {
+      return settle_or_follow(complex, state.report.smallest_neck,
+                              options.settle, steps);
+    };
+    FilmState found = settle_now();
+    // Facets that were even where the film began may be folded where it ends.
+    for (int round = 0; round < kPolishRounds && is_settled(found) &&
+                        complex.mesh.facets.size() <= kDirect &&
+                        groom::even_out(complex, groom::EvenOut::Flips);
+         ++round) {
+      chain = Chain();
+      chain.add(complex, {});
+      found = settle_now();
+    }
     if (has_contacts(complex)) {
       chain = Chain();  // ranks may have changed
       chain.add(complex, {});
@@ -205,9 +223,14 @@ FilmState settle_finer(Chain& chain, films::FilmComplex& complex,
                        .volume_tolerance = options.settle.volume_tolerance,
                        .reduction = last ? 0.0 : kLooseReduction,
                        .monitor = options.settle.monitor};
-  const NestedResult found =
+  NestedResult found =
       newton.run(complex.mesh.points, pressures_of(state.report), nested);
   steps += found.iterations;
+  // Around corners, where a film turns far, refined facets fold.
+  if (!found.converged && groom::even_out(complex, groom::EvenOut::KeepEdges)) {
+    found = newton.run(complex.mesh.points, pressures_of(state.report), nested);
+    steps += found.iterations;
+  }
   if (!found.converged) {
     return settle_directly();
   }

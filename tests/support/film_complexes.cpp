@@ -107,9 +107,7 @@ films::FilmComplex cube_start(int n) {
   return builder.complex();
 }
 
-films::FilmComplex strut_start() {
-  constexpr int kAround = 20;
-  constexpr int kRows = 6;
+films::FilmComplex strut_start(int around, int rows) {
   ComplexBuilder builder;
   const int film = builder.liquid("film");
   const int foot = builder.solid("foot");
@@ -118,10 +116,10 @@ films::FilmComplex strut_start() {
       "square", curves::Polygon{{Vec3(1, -1, 0), Vec3(1, 1, 0), Vec3(-1, 1, 0),
                                  Vec3(-1, -1, 0)}});
   const int circle = builder.curve("circle", ring_at(4.0, 0.6, 0.8));
-  const std::vector<int> lower = builder.rim(square, kAround);
+  const std::vector<int> lower = builder.rim(square, around);
   // The square begins at a corner, at -45 degrees.
-  const std::vector<int> upper = builder.rim(circle, kAround, -0.125);
-  ruled_bands(builder, film, lower, upper, kRows);
+  const std::vector<int> upper = builder.rim(circle, around, -0.125);
+  ruled_bands(builder, film, lower, upper, rows);
   builder.fan(foot, reversed(lower), films::VertexKind::InCap);
   builder.fan(head, upper, films::VertexKind::InCap);
   builder.complex().bodies = {{.name = "strut",

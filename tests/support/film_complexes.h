@@ -22,8 +22,8 @@ films::FilmComplex cube_start(int n = 3);
 
 /// Film from the square of side 2 at z = 0 to the circle of radius 0.6 at
 /// z = 4 about x = 0.8, closed by solid caps; one body of volume 14. 20 around
-/// x 6 rows: 240 facets, x 4^5 = 245,760.
-films::FilmComplex strut_start();
+/// x 6 rows: 240 facets, x 4^5 = 245,760. `around` is a multiple of 4.
+films::FilmComplex strut_start(int around = 20, int rows = 6);
 
 /// Rings of radius 1 at z = +-0.3 joined to a disk of radius 0.8 at z = 0:
 /// three films along a liquid circle. 12 around: 60 facets,
