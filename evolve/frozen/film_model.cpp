@@ -15,6 +15,7 @@
 #include "evolve/films/rim_grading.h"
 #include "evolve/films/solid_facets.h"
 #include "evolve/frozen/film_model_impl.h"
+#include "evolve/groom/rough_films.h"
 #include "evolve/groom/slivers.h"
 #include "evolve/settle/equilibrium.h"
 #include "evolve/settle/find_equilibrium.h"
@@ -396,7 +397,15 @@ void FilmModel::Impl::refine_and_settle(int levels, bool may_groom,
     if (reference.failure) {
       continue;
     }
+    const films::FilmComplex refined = complex;
     settle_level(settle);
+    // Refined folds settle as saddles, or not at all.
+    if (may_groom && reference.failure) {
+      complex = refined;
+      if (groom::even_out(complex, groom::EvenOut::KeepEdges)) {
+        settle_level(settle);
+      }
+    }
     // Where the coarser film was far from this one, new vertices came to it
     // aslant: slivers, whose modes are wrong at any length of edge.
     if (may_groom && !reference.failure && groom::spread_slivers(complex)) {

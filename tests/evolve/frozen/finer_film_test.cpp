@@ -64,6 +64,43 @@ TEST(FinerFilm, KnowsTheErrorOfCatenoids) {
   }
 }
 
+/// A square foot of side 38, a round end of radius 14 that stands off it and
+/// leans, 70 above; the end 10 long, a body of its own.
+films::FilmSystem leaning_strut() {
+  const double tilt = std::numbers::pi / 18.0;
+  const Vec3 axis(std::sin(tilt), 0.0, std::cos(tilt));
+  const Vec3 eye(8.0, 0.0, 70.0);
+  const double area = std::numbers::pi * 14.0 * 14.0;
+  films::FilmSystem system;
+  system.curves = {{"foot", curves::Rectangle{.normal = Vec3(0, 0, -1),
+                                              .axis = Vec3(1, 0, 0),
+                                              .width = 38.0,
+                                              .height = 38.0,
+                                              .corner_radius = 5.0}},
+                   {"eye", curves::Circle{eye, axis, 14.0}},
+                   {"end", curves::Circle{eye + 10.0 * axis, axis, 14.0}}};
+  system.films = {{"skin", films::FilmKind::Branch, {"foot", "eye"}, 1.0},
+                  {"side", films::FilmKind::Loft, {"eye", "end"}, 1.0}};
+  system.caps = {{"low", "foot"}, {"joint", "eye"}, {"high", "end"}};
+  system.bodies = {{"part",
+                    {"skin", "low", "joint"},
+                    1.1 * 70.0 * (38.0 * 38.0 + area) / 2.0,
+                    std::nullopt},
+                   {"boss", {"side", "joint", "high"}, 10.0 * area, {}}};
+  return system;
+}
+
+// Folds at the foot's corners, where edges are as long as these, stay folds
+// when they are refined: their film was an unstable one.
+TEST(FinerFilm, FoldsAreEvenedOut) {
+  for (const double edge : {15.0, 16.0, 17.0}) {
+    const frozen::FilmModel model = frozen::FilmModel::freeze(
+        leaning_strut(), {.edge = edge, .refinements = 1});
+    EXPECT_FALSE(model.reference().failure)
+        << edge << ": " << model.reference().report.verdict;
+  }
+}
+
 TEST(FinerFilm, IsThatOfOneMoreRefinement) {
   const films::FilmSystem system = two_arm(0);
   const frozen::FilmModel once =
