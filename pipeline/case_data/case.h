@@ -38,6 +38,7 @@ struct Case {
   std::string answer_hash;  // of all that a study's answer depends on
   UnitSystem units;
   std::vector<DesignVariable> design;
+  std::vector<DesignVector> vectors;  // of these, in their order
   std::vector<Parameter> parameters;
   std::vector<int> parameter_order;  // each after those that it uses
   std::vector<CurveEntry> curves;

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "pipeline/case_data/bound_text.h"
+#include "core/math/bound_text.h"
 #include "pipeline/reader/case_reader_repeat.h"
 
 namespace meniscus::reader {
@@ -33,7 +33,7 @@ std::optional<case_data::Quantity> read_expression(
   static const std::vector<std::string> letters = {"i", "j", "k"};
   std::string bound = text->get();
   if (!context.indices.empty()) {
-    bound = case_data::with_values(
+    bound = with_values(
         filled(context, bound, context.indices, result.line, key),
         {letters.begin(), letters.begin() + std::ssize(context.indices)},
         std::vector<double>(context.indices.begin(), context.indices.end()));
