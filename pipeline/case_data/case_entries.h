@@ -58,6 +58,14 @@ struct DesignVector {
   std::vector<int> shape;  // one to three counts, each 1 or more
   std::size_t first = 0;   // its first element among the design variables
   SourceLine line = 0;
+
+  std::size_t size() const {
+    std::size_t count = 1;
+    for (const int along : shape) {
+      count *= static_cast<std::size_t>(along);
+    }
+    return count;
+  }
 };
 
 struct Parameter {

@@ -101,7 +101,6 @@ class CaseTable {
   /// The same with the dimension of its text.
   std::optional<Constant> measured(const char* key) const;
   std::vector<double> constants(const char* key) const;
-  std::vector<Constant> measured_constants(const char* key) const;
   std::optional<case_data::QuantityVector> vector(const char* key) const;
   /// Points, and { at = [x, y, z], repeat = n } for several.
   std::vector<case_data::QuantityVector> vectors(const char* key) const;
