@@ -50,15 +50,28 @@ std::vector<std::size_t> positions_of(const Case& input,
 }
 
 std::string row_text(const Case& input, const DesignRow& row,
-                     const VectorX& design) {
+                     const VectorX& design, int digits) {
   const ShownUnit unit = shown_unit(input, input.design[row.first]);
   const auto values = design.segment(static_cast<Eigen::Index>(row.first),
                                      static_cast<Eigen::Index>(row.count));
   if (row.vector == nullptr) {
-    return unit.text(values[0]);
+    return unit.text(values[0], digits);
   }
-  return fmt::format("{:.6g} to {}, mean {}", unit.factor * values.minCoeff(),
-                     unit.text(values.maxCoeff()), unit.text(values.mean()));
+  if (values.minCoeff() == values.maxCoeff()) {
+    return unit.text(values[0], digits) + " each";
+  }
+  return fmt::format("{:.{}g} to {}, mean {}", unit.factor * values.minCoeff(),
+                     digits, unit.text(values.maxCoeff(), digits),
+                     unit.text(values.mean(), digits));
+}
+
+std::string design_text(const Case& input, const VectorX& design) {
+  std::string text;
+  for (const DesignRow& row : design_rows(input)) {
+    text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", row.name,
+                        row_text(input, row, design));
+  }
+  return text;
 }
 
 }  // namespace meniscus::case_data

@@ -31,8 +31,11 @@ std::vector<std::size_t> positions_of(const Case& input,
                                       const std::string& name);
 
 /// What people are shown of a row at a design: "25 mm", of a vector "0.71 to
-/// 1.42 mm, mean 1.03 mm".
+/// 1.42 mm, mean 1.03 mm" or "1 mm each".
 std::string row_text(const Case& input, const DesignRow& row,
-                     const VectorX& design);
+                     const VectorX& design, int digits = 6);
+
+/// "foot = 25 mm, t = 0.71 to 1.42 mm, mean 1.03 mm".
+std::string design_text(const Case& input, const VectorX& design);
 
 }  // namespace meniscus::case_data

@@ -12,6 +12,7 @@
 #include "pipeline/reader/case_reader.h"
 #include "pipeline/store/find_runs.h"
 #include "pipeline/store/incumbent.h"
+#include "pipeline/store/named_values.h"
 #include "pipeline/store/refreeze.h"
 
 namespace meniscus::store {
@@ -115,16 +116,17 @@ VectorX told_design(const case_data::Case& input,
   VectorX design = case_data::initial_design(input);
   for (std::size_t k = 0; k < input.design.size(); ++k) {
     const std::string& name = input.design[k].name;
-    const auto told =
+    const auto all =
         result.is_object() ? result.find("parameters") : result.end();
-    if (told == result.end() || !told->is_object() || !told->contains(name) ||
-        !(*told)[name].is_number()) {
+    const nlohmann::ordered_json* told =
+        all == result.end() ? nullptr : find_named(*all, name);
+    if (told == nullptr || !told->is_number()) {
       throw InvalidInput(fmt::format(
           "{}: it is damaged: no number for '{}' among its parameters; remove "
           "it to have the best design of study.sqlite, or run the case again",
           file.string(), name));
     }
-    design[static_cast<Eigen::Index>(k)] = (*told)[name].get<double>();
+    design[static_cast<Eigen::Index>(k)] = told->get<double>();
   }
   return design;
 }

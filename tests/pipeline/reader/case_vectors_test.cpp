@@ -333,6 +333,8 @@ TEST(DesignVectors, RowsShowThemAsOne) {
   EXPECT_EQ(case_data::row_text(input, rows[0], design), "20 mm");
   EXPECT_EQ(case_data::row_text(input, rows[1], design),
             "22.5 to 31, mean 25.5833");
+  EXPECT_EQ(case_data::row_text(input, rows[1], VectorX::Constant(7, 25.0)),
+            "25 each");
   EXPECT_THAT(case_data::positions_of(input, "t"),
               ElementsAre(1, 2, 3, 4, 5, 6));
   EXPECT_THAT(case_data::positions_of(input, "t[2, 1]"), ElementsAre(4));
