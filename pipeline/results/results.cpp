@@ -22,6 +22,7 @@
 #include "pipeline/forward/walls.h"
 #include "pipeline/results/export_part.h"
 #include "pipeline/results/run_files.h"
+#include "pipeline/store/named_values.h"
 #include "pipeline/store/refreeze.h"
 #include "pipeline/store/stored_case.h"
 #include "pipeline/store/study_table.h"

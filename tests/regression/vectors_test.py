@@ -83,6 +83,11 @@ class Vectors(ProgramTest):
                               "study.kind=analyse"), 0)
         self.assertEqual(self.result(self.folder / "next")["parameters"]["t"],
                          self.result(out)["parameters"]["t"])
+        other = self.folder / "other.toml"
+        other.write_text(CASE.read_text().replace("shape = [2, 3]",
+                                                  "shape = [2, 4]"))
+        self.expect(self.call("run", other, "--from", out, "--out", "no"), 2,
+                    "has no design variable of this case, which has t")
         # Damaged: a row is missing.
         result = self.result(out)
         result["parameters"]["t"].pop()

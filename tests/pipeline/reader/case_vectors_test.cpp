@@ -287,6 +287,15 @@ TEST(DesignVectors, SurviveRandomIndices) {
   EXPECT_GT(good, 0);
 }
 
+TEST(DesignVectors, TheFirstElementThatDoesNotFitSpeaksForAll) {
+  // At -25 a point lies on the one across.
+  const std::vector<std::string> problems = problems_of(
+      changed(petal_strut(), "bounds = [20.0, 32.0]", "bounds = [-25, 32]"));
+  ASSERT_EQ(problems.size(), 1U) << testing::PrintToString(problems);
+  EXPECT_THAT(problems[0],
+              HasSubstr("with 't[1,1]' at the end of its bounds, -25"));
+}
+
 TEST(DesignVectors, ElementsThatNothingUsesAreTold) {
   const reader::CaseReading reading =
       reading_of(changed(petal_strut(), "shape = [2, 3]", "shape = [2, 5]"));
