@@ -208,6 +208,13 @@ TEST(DesignGradient, OfVectorsIsExact) {
   const std::string coarse =
       changed(petal_strut(), "fea = 6.0\nfilm = 3.0", "fea = 12.0\nfilm = 6.0");
   expect_exact(coarse, VectorX::LinSpaced(6, -1.0, 1.5));
+  // In a tension, and in a pressure that is an expression of the place.
+  expect_exact(changed(changed(coarse, "curves = [\"base\", \"head\"]",
+                               "curves = [\"base\", \"head\"]\n"
+                               "tension = \"t[1, 1] / 25\""),
+                       "force = [\"load\", 0, 0]",
+                       "pressure = \"t[1, 2] / 10 + t[2, 1 + 1] * x / 300\""),
+               VectorX::LinSpaced(6, -1.0, 1.5));
   const std::string text =
       changed(changed(changed(coarse, "shape = [2, 3]", "shape = [4, 3]"),
                       "t[i, j] * cos((j + 3 * i) * pi / 3)",
