@@ -18,7 +18,6 @@ namespace meniscus::reader {
 namespace {
 
 constexpr std::size_t kMostIndices = 3;  // i, j, k
-constexpr int kMostElements = 4000;
 
 /// Parameters in the file's order; toml++ sorts by name. What an override put
 /// there keeps its place: the key's.

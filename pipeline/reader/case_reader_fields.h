@@ -25,6 +25,9 @@ class StepEdges;
 
 namespace meniscus::reader {
 
+/// Of one vector of design variables.
+inline constexpr int kMostElements = 4000;
+
 /// Nodes that overrides put into the file: the override's number, from 1.
 using OverriddenNodes = std::map<const toml::node*, int>;
 

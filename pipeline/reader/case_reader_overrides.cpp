@@ -170,8 +170,14 @@ Element find_element(toml::table& root, const std::string& name) {
 /// What is wrong with the indices; empty for an element that is there.
 std::string wrong_indices(const Element& element) {
   bool good = element.indices.size() == element.shape.size();
+  double elements = 1.0;
   for (std::size_t k = 0; good && k < element.shape.size(); ++k) {
     good = element.indices[k] >= 1 && element.indices[k] <= element.shape[k];
+    elements *= element.shape[k];
+  }
+  if (good && elements > kMostElements) {
+    return fmt::format("its shape {} has more than {}",
+                       shape_text(element.shape), kMostElements);
   }
   return good ? ""
          : element.shape.empty()

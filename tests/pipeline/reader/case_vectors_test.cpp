@@ -262,6 +262,15 @@ TEST(DesignVectors, WrongOverridesAreToldAsGiven) {
                                HasSubstr(wrong.told))))
         << wrong.given;
   }
+  // Nothing is made of a shape that no vector can have.
+  EXPECT_THAT(
+      reading_of(changed(petal_strut(), "shape = [2, 3]",
+                         "shape = [4000, 4000, 4000]"),
+                 {"t[1,2,3]=25"})
+          .problems,
+      AllOf(Contains(HasSubstr("its shape 4000 x 4000 x 4000 has more than "
+                               "4000")),
+            Contains(HasSubstr("design.t.shape makes 64000000000"))));
   EXPECT_THAT(reading_of(strut(), {"foot[1]=25"}).problems,
               Contains(HasSubstr("it has no shape and is one value")));
 }
