@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cstdio>
 
 #include <fmt/format.h>
@@ -9,6 +8,7 @@
 #include "app/signals.h"
 #include "core/error.h"
 #include "core/nearest_name.h"
+#include "pipeline/case_data/design_vectors.h"
 #include "pipeline/forward/gradient_check.h"
 
 namespace meniscus::app {
@@ -19,23 +19,24 @@ namespace {
 VectorX design_at(const case_data::Case& input,
                   const std::vector<std::string>& places) {
   VectorX design = case_data::initial_design(input);
-  const std::vector<std::string> known = case_data::design_names(input);
   for (const std::string& text : places) {
     const auto [name, value] = named_number("--at", text);
-    const auto at = std::find(known.begin(), known.end(), name);
-    if (at == known.end()) {
-      const std::string near = nearest_name(name, known);
+    const std::vector<std::size_t> found = case_data::positions_of(input, name);
+    if (found.empty()) {
+      const std::string near = nearest_name(name, case_data::row_names(input));
       throw InvalidInput(fmt::format(
           "--at {}: expected NAME=VALUE of a design variable{}", text,
           near.empty() ? "" : "; did you mean '" + near + "'?"));
     }
-    const case_data::DesignVariable& variable =
-        input.design[at - known.begin()];
-    if (!(value >= variable.lower && value <= variable.upper)) {
-      throw InvalidInput(fmt::format("--at {}: outside the bounds {:g} to {:g}",
-                                     text, variable.lower, variable.upper));
+    for (const std::size_t k : found) {
+      const case_data::DesignVariable& variable = input.design[k];
+      if (!(value >= variable.lower && value <= variable.upper)) {
+        throw InvalidInput(
+            fmt::format("--at {}: outside the bounds {:g} to {:g}", text,
+                        variable.lower, variable.upper));
+      }
+      design[static_cast<Eigen::Index>(k)] = value;
     }
-    design[at - known.begin()] = value;
   }
   return design;
 }

@@ -5,6 +5,7 @@
 #include <set>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "app/case_input.h"
 #include "app/commands.h"
@@ -18,6 +19,7 @@
 #include "core/math/union_find.h"
 #include "io/vtk_files.h"
 #include "pipeline/case_data/case_symmetry.h"
+#include "pipeline/case_data/design_vectors.h"
 #include "pipeline/case_films/film_advice.h"
 #include "pipeline/case_films/film_start.h"
 #include "pipeline/forward/part_warnings.h"
@@ -54,6 +56,21 @@ int new_command(const std::string& name) {
   });
 }
 
+namespace {
+
+/// " (6 of them t [2 x 3])" beside the number of design variables.
+std::string vectors_text(const case_data::Case& input) {
+  std::vector<std::string> parts;
+  for (const case_data::DesignRow& row : case_data::design_rows(input)) {
+    if (row.vector != nullptr) {
+      parts.push_back(fmt::format("{} of them {}", row.count, row.label()));
+    }
+  }
+  return parts.empty() ? "" : fmt::format(" ({})", fmt::join(parts, ", "));
+}
+
+}  // namespace
+
 int check_command(const std::string& case_path, const CommonArguments& common) {
   const reader::CaseReading reading = read_and_report_case(case_path, common);
   if (!reading.input) {
@@ -71,7 +88,7 @@ int check_command(const std::string& case_path, const CommonArguments& common) {
       count_text(input.curves.size(), "curve"),
       count_text(input.films.size(), "film"),
       count_text(input.bodies.size(), "body", "bodies"),
-      count_text(input.design.size(), "design variable"),
+      count_text(input.design.size(), "design variable") + vectors_text(input),
       count_text(input.responses.size(), "response"));
   if (!input.study.members.empty()) {
     text += ", " + count_text(input.study.members.size(), "member");

@@ -1,5 +1,6 @@
 #include "optimize/evaluator_core.h"
 
+#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -170,27 +171,62 @@ void EvaluatorCore::report_progress(const std::string& detail) {
                      -1.0});
 }
 
+Eigen::Index EvaluatorCore::group_end(Eigen::Index i) const {
+  const std::string& group = variables_[static_cast<std::size_t>(i)].group;
+  Eigen::Index end = i + 1;
+  while (!group.empty() && end < size() &&
+         variables_[static_cast<std::size_t>(end)].group == group) {
+    ++end;
+  }
+  return end;
+}
+
 std::string EvaluatorCore::describe(const VectorX& x) const {
   std::string text;
-  for (Eigen::Index i = 0; i < x.size(); ++i) {
+  for (Eigen::Index i = 0, end = 0; i < x.size(); i = end) {
     const Variable& variable = variables_[static_cast<std::size_t>(i)];
-    text += fmt::format("{}{} = {}", i == 0 ? "" : ", ", variable.name,
-                        variable.shown.text(x[i]));
+    end = group_end(i);
+    const auto values = x.segment(i, end - i);
+    const std::string least = variable.shown.text(values.minCoeff());
+    const std::string most = variable.shown.text(values.maxCoeff());
+    text += text.empty() ? "" : ", ";
+    text += variable.group.empty()
+                ? fmt::format("{} = {}", variable.name, least)
+            : least == most
+                ? fmt::format("{} = {} each", variable.group, least)
+                : fmt::format("{} = {} to {}", variable.group, least, most);
   }
   return text;
 }
 
 std::string EvaluatorCore::bounds_reached(const VectorX& x) const {
   std::string text;
-  for (Eigen::Index i = 0; i < size(); ++i) {
+  for (Eigen::Index i = 0, end = 0; i < size(); i = end) {
     const Variable& variable = variables_[static_cast<std::size_t>(i)];
-    const double near = kAtBound * ranges_[i];
-    const bool low = x[i] <= variable.lower + near;
-    if (low || x[i] >= variable.upper - near) {
-      text += fmt::format(
-          "{}{} at its {} {} {}", text.empty() ? "" : ", ", variable.name,
-          low ? "lower" : "upper", variable.range ? "end here," : "bound",
-          variable.shown.text(low ? variable.lower : variable.upper));
+    end = group_end(i);
+    std::array<int, 2> reached = {0, 0};  // lower, upper
+    for (Eigen::Index k = i; k < end; ++k) {
+      const Variable& at = variables_[static_cast<std::size_t>(k)];
+      const double near = kAtBound * ranges_[k];
+      const bool low = x[k] <= at.lower + near;
+      reached[0] += low ? 1 : 0;
+      reached[1] += !low && x[k] >= at.upper - near ? 1 : 0;
+    }
+    const char* what = variable.range ? "end here" : "bound";
+    for (const bool low : {true, false}) {
+      const int count = reached[low ? 0 : 1];
+      if (count == 0) {
+        continue;
+      }
+      text += text.empty() ? "" : ", ";
+      text +=
+          variable.group.empty()
+              ? fmt::format(
+                    "{} at its {} {}{} {}", variable.name,
+                    low ? "lower" : "upper", what, variable.range ? "," : "",
+                    variable.shown.text(low ? variable.lower : variable.upper))
+              : fmt::format("{} of {} elements of {} at {} {}", count, end - i,
+                            variable.group, low ? "a lower" : "an upper", what);
     }
   }
   return text;

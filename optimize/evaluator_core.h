@@ -105,7 +105,8 @@ class EvaluatorCore {
     return limits_.max_evaluations - evaluations_;
   }
   const Failure& last_failure() const { return last_failure_; }
-  std::string describe(const VectorX& x) const;  // "a = 1, b = 2"
+  /// "a = 1, b = 2"; of a group "t = 1 to 3" or "t = 1 each".
+  std::string describe(const VectorX& x) const;
   /// The variables of x that stand at a bound, in words; "" when none does.
   std::string bounds_reached(const VectorX& x) const;
   /// ", 3 of which could not be evaluated (last: ...)"; "" when none failed.
@@ -131,6 +132,9 @@ class EvaluatorCore {
   void set_halt(Halt halt) { halt_ = halt; }
 
  private:
+  /// Past the variables that are of the same group as i.
+  Eigen::Index group_end(Eigen::Index i) const;
+
   std::vector<Variable> variables_;
   EvaluationLimits limits_;
   Monitor& monitor_;

@@ -24,6 +24,9 @@ struct Variable {
   /// bounds hold a search near its start.
   std::optional<double> range = {};
   ShownUnit shown = {};  // in messages
+  /// The name that people know it by together with its neighbours of the same
+  /// group, in messages; empty: its own.
+  std::string group = {};
 };
 
 /// The values of all responses at a design, or why there are none.

@@ -1,7 +1,10 @@
+#include <algorithm>
+
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
 #include "core/error.h"
+#include "pipeline/case_data/design_vectors.h"
 #include "pipeline/case_data/response_entries.h"
 #include "pipeline/reader/case_reader.h"
 #include "pipeline/responses/responses.h"
@@ -44,6 +47,23 @@ py::array bounds_of(const case_data::Case& input,
     values.mutable_at(static_cast<py::ssize_t>(k)) = input.design[k].*end;
   }
   return values;
+}
+
+/// Numbers of design variables by name: floats, arrays of vectors.
+py::dict by_name(const case_data::Case& input, const VectorX& values) {
+  py::dict named;
+  for (const case_data::DesignRow& row : case_data::design_rows(input)) {
+    const double* first = values.data() + row.first;
+    if (row.vector == nullptr) {
+      named[py::str(row.name)] = *first;
+      continue;
+    }
+    py::array_t<double> array(std::vector<py::ssize_t>(
+        row.vector->shape.begin(), row.vector->shape.end()));
+    std::copy(first, first + row.count, array.mutable_data());
+    named[py::str(row.name)] = array;
+  }
+  return named;
 }
 
 void bind_entries(py::module_& module) {
@@ -136,7 +156,18 @@ void bind_names(py::class_<ReadCase>& type) {
 void bind_case_numbers(py::class_<ReadCase>& type) {
   type.def_property_readonly(
           "design", [](const ReadCase& self) { return self.input->design; },
-          "The design variables (DesignVariable), in the order of designs.")
+          "The design variables (DesignVariable), in the order of designs; a "
+          "vector's elements, 't[2,3]', one by one, the last index fastest.")
+      .def(
+          "by_name",
+          [](const ReadCase& self, const py::object& values) {
+            return by_name(*self.input, to_values(*self.input, values));
+          },
+          py::arg("values") = py::none(),
+          "Numbers per design variable by name: of a design (the initial one), "
+          "a gradient or bounds, float64 (design variables,). A float each, of "
+          "a vector a float64 array of its shape; new ones. A dict of them is "
+          "a design again.")
       .def_property_readonly(
           "initial_design",
           [](const ReadCase& self) {

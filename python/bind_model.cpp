@@ -104,7 +104,9 @@ void bind_common(py::class_<Kind>& type) {
           "no other; None where it can.")
       .def("settle", &settle<Kind>, py::arg("design") = py::none(),
            "The film at rest at a design (Film): numbers in the order of "
-           "Case.design, a dict of names, or None for the initial one. Safe "
+           "Case.design, a dict of names (of a vector an array), or None for "
+           "the "
+           "initial one. Safe "
            "from several threads.");
 }
 

@@ -9,24 +9,61 @@
 
 #include "core/error.h"
 #include "core/nearest_name.h"
+#include "pipeline/case_data/design_vectors.h"
 
 namespace meniscus::python {
 
 namespace {
 
+using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+/// The numbers that a value of a mapping stands for: one for each of the
+/// variables of that name, or an array of a vector's shape.
+Numbers numbers_for(const case_data::Case& input, const std::string& name,
+                    const py::handle& value) {
+  Numbers numbers = Numbers::ensure(py::reinterpret_borrow<py::object>(value));
+  if (!numbers) {
+    PyErr_Clear();
+    throw InvalidInput(fmt::format("design: '{}' is {}, expected numbers", name,
+                                   py::repr(value).cast<std::string>()));
+  }
+  std::vector<int> shape;
+  for (const case_data::DesignVector& vector : input.vectors) {
+    if (vector.name == name) {
+      shape = vector.shape;
+    }
+  }
+  const std::vector<int> found(numbers.shape(),
+                               numbers.shape() + numbers.ndim());
+  if (!found.empty() && found != shape) {
+    throw InvalidInput(fmt::format(
+        "design: '{}' is an array of shape {}, expected {}", name,
+        py::repr(numbers.attr("shape")).cast<std::string>(),
+        shape.empty() ? "one number"
+                      : fmt::format("({}) or one number for all elements",
+                                    fmt::join(shape, ", "))));
+  }
+  return numbers;
+}
+
 VectorX from_mapping(const case_data::Case& input, const py::dict& values) {
   VectorX design = case_data::initial_design(input);
-  const std::vector<std::string> names = case_data::design_names(input);
   for (const auto& [key, value] : values) {
-    design[position_of(py::str(key).cast<std::string>(), names,
-                       "design variable")] = value.cast<double>();
+    const std::string name = py::str(key).cast<std::string>();
+    const std::vector<std::size_t> found = case_data::positions_of(input, name);
+    if (found.empty()) {
+      position_of(name, case_data::row_names(input), "design variable");
+    }
+    const Numbers numbers = numbers_for(input, name, value);
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      design[static_cast<Eigen::Index>(found[k])] =
+          numbers.data()[numbers.ndim() == 0 ? 0 : k];
+    }
   }
   return design;
 }
 
 VectorX from_numbers(const case_data::Case& input, const py::object& values) {
-  using Numbers =
-      py::array_t<double, py::array::c_style | py::array::forcecast>;
   const Numbers numbers = Numbers::ensure(values);
   if (!numbers) {
     PyErr_Clear();
@@ -38,7 +75,7 @@ VectorX from_numbers(const case_data::Case& input, const py::object& values) {
     throw InvalidInput(
         fmt::format("design: found an array of shape {}, expected ({},): {}",
                     py::repr(numbers.attr("shape")).cast<std::string>(), wanted,
-                    fmt::join(case_data::design_names(input), ", ")));
+                    fmt::join(case_data::row_names(input), ", ")));
   }
   return Eigen::Map<const VectorX>(numbers.data(), wanted);
 }
@@ -58,13 +95,14 @@ int position_of(const std::string& found, const std::vector<std::string>& names,
   return static_cast<int>(at - names.begin());
 }
 
+VectorX to_values(const case_data::Case& input, const py::object& values) {
+  return values.is_none()                   ? case_data::initial_design(input)
+         : py::isinstance<py::dict>(values) ? from_mapping(input, values)
+                                            : from_numbers(input, values);
+}
+
 VectorX to_design(const case_data::Case& input, const py::object& design) {
-  if (design.is_none()) {
-    return case_data::initial_design(input);
-  }
-  const VectorX values = py::isinstance<py::dict>(design)
-                             ? from_mapping(input, design)
-                             : from_numbers(input, design);
+  const VectorX values = to_values(input, design);
   for (Eigen::Index k = 0; k < values.size(); ++k) {
     if (!std::isfinite(values[k])) {
       throw InvalidInput(fmt::format(

@@ -19,8 +19,12 @@ struct ReadCase {
 };
 
 /// A number per design variable in their order, or a mapping of names, those
-/// left out at their initial values; None: the initial design. Throws
-/// InvalidInput for anything else and for numbers that are not finite.
+/// left out at their initial values: of a vector an array of its shape, or one
+/// number for all elements; "t[2, 3]" is one. None: the initial design. Throws
+/// InvalidInput for anything else.
+VectorX to_values(const case_data::Case& input, const py::object& values);
+
+/// The same; numbers that are not finite are refused too.
 VectorX to_design(const case_data::Case& input, const py::object& design);
 
 /// Position of a response. Throws InvalidInput with the nearest name.

@@ -6,6 +6,7 @@
 #include <set>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "core/math/expression_code.h"
 
@@ -142,8 +143,11 @@ std::string application(int operation, const std::vector<double>& operands) {
 
 [[noreturn]] void bad_value(double value, const std::string& text, int column) {
   const auto first = static_cast<std::size_t>(column) - 1;
-  const std::size_t end = text.find_first_not_of(
+  std::size_t end = text.find_first_not_of(
       "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_", first);
+  if (end != std::string::npos && text[end] == '[') {
+    end = text.find(']', end) + 1;
+  }
   throw ExpressionError(
       fmt::format("'{}' is {}, not a finite number, in '{}'",
                   text.substr(first, end - first), value, text),
@@ -230,6 +234,15 @@ bool is_reserved_name(std::string_view name) {
   return std::any_of(kConstants.begin(), kConstants.end(), is) ||
          std::any_of(kFunctions.begin(), kFunctions.end(), is) ||
          name == kConditional || name == "x" || name == "y" || name == "z";
+}
+
+std::string element_name(std::string_view vector,
+                         std::span<const int> indices) {
+  return fmt::format("{}[{}]", vector, fmt::join(indices, ","));
+}
+
+std::string shape_text(std::span<const int> shape) {
+  return fmt::format("{}", fmt::join(shape, " x "));
 }
 
 }  // namespace meniscus

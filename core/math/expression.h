@@ -6,6 +6,7 @@
 ///   sin cos tan asin acos atan atan2 sinh cosh tanh exp log log10 sqrt abs
 ///   min max pow sqr if(condition, then, else)
 ///   pi  e  deg (= pi / 180; angles are radians)
+///   t[2, i + 1]: an element of a vector, its indices constant, from 1
 ///
 /// -2^2 is -4; 2^-1 is 0.5. A comparison is 1 or 0. Of if() only the branch
 /// that holds is evaluated. abs, min, max, if and comparisons are not smooth
@@ -13,6 +14,7 @@
 /// of the right side).
 #pragma once
 
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -42,12 +44,16 @@ class Expression {
   Expression() : Expression(0.0) {}
   explicit Expression(double constant);
 
-  /// `names`: the values that may appear, by position. Throws ExpressionError:
-  /// syntax, unknown name (with the nearest known one), more than 200 levels
-  /// of nesting, longer than 10,000 characters. The decimal sign is a point
-  /// whatever the locale.
-  static Expression parse(std::string_view text,
-                          const std::vector<std::string>& names);
+  /// `names`: the values that may appear, by position. Those of a vector are
+  /// the names of its elements (element_name), the last of them that of the
+  /// largest indices. `constants`: per name, its value where an index may use
+  /// it; none without. Throws ExpressionError: syntax, unknown name (with the
+  /// nearest known one), a vector without indices, an index beyond its vector
+  /// or not whole or not constant, more than 200 levels of nesting, longer than
+  /// 10,000 characters. The decimal sign is a point whatever the locale.
+  static Expression parse(
+      std::string_view text, const std::vector<std::string>& names,
+      std::span<const std::optional<double>> constants = {});
 
   /// `values`: one per name given to parse(). Throws ExpressionError, naming
   /// operation and operands, when an operation has no finite result; over
@@ -56,6 +62,7 @@ class Expression {
   Dual evaluate(std::span<const Dual> values) const;
   Dual3 evaluate(std::span<const Dual3> values) const;
 
+  /// As it was read, elements by their names: "2 * t[2,3]".
   const std::string& text() const { return text_; }
   /// Positions of the names that appear, ascending.
   std::vector<int> names_used() const;
@@ -79,5 +86,11 @@ class Expression {
 /// Constants, functions and the coordinates x, y, z, which expressions of a
 /// place know: no name of a case may be one.
 bool is_reserved_name(std::string_view name);
+
+/// "t[2,3]": the name of an element of the vector t.
+std::string element_name(std::string_view vector, std::span<const int> indices);
+
+/// "8 x 12".
+std::string shape_text(std::span<const int> shape);
 
 }  // namespace meniscus

@@ -12,6 +12,12 @@
 
 namespace meniscus::expression_code {
 
+/// What names are made of; a digit is not their first.
+constexpr bool is_letter(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+}
+constexpr bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
 enum Operation : int {
   Number,
   Name,

@@ -1,8 +1,11 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "core/math/expression.h"
 #include "core/math/expression_code.h"
@@ -17,15 +20,39 @@ constexpr int kDeepest = 200;
 constexpr std::size_t kLongest = 10000;
 constexpr std::size_t kShown = 80;  // characters of a text in a message
 
-bool is_letter(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
-}
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-
+/// `known`: of a vector its elements, which count as its one name.
 std::string suggestion(const std::string& word,
-                       const std::vector<std::string>& known) {
+                       std::vector<std::string> known) {
+  for (std::string& name : known) {
+    name = name.substr(0, name.find('['));
+  }
   const std::string near = nearest_name(word, known);
   return near.empty() ? "" : " (did you mean '" + near + "'?)";
+}
+
+/// The indices of the vector's last element; none where it has none.
+std::vector<int> shape_of(const std::string& vector,
+                          const std::vector<std::string>& names) {
+  std::vector<int> shape;
+  const auto last =
+      std::find_if(names.rbegin(), names.rend(), [&](const auto& name) {
+        return name.starts_with(vector) && name.size() > vector.size() &&
+               name[vector.size()] == '[';
+      });
+  if (last != names.rend()) {
+    const char* at = last->data() + vector.size();
+    const char* end = last->data() + last->size();
+    while (at < end && *at != ']') {
+      at = std::from_chars(at + 1, end, shape.emplace_back()).ptr;
+    }
+  }
+  return shape;
+}
+
+/// "t[i, j]".
+std::string written(const std::string& vector, const std::vector<int>& shape) {
+  const std::string letters = "i, j, k";
+  return fmt::format("{}[{}]", vector, letters.substr(0, 3 * shape.size() - 2));
 }
 
 }  // namespace
@@ -33,8 +60,9 @@ std::string suggestion(const std::string& word,
 /// Recursive descent into postfix code.
 class ExpressionParser {
  public:
-  ExpressionParser(std::string_view text, const std::vector<std::string>& names)
-      : text_(text), names_(names) {}
+  ExpressionParser(std::string_view text, const std::vector<std::string>& names,
+                   std::span<const std::optional<double>> constants)
+      : text_(text), names_(names), constants_(constants) {}
 
   /// What it made of a text, for others.
   static std::vector<Step> steps_of(const Expression& expression) {
@@ -61,16 +89,20 @@ class ExpressionParser {
                              text_[at_] == ',' ? " (decimals follow a point)"
                                                : unit_advice()));
     }
-    Expression result;
-    result.text_ = text_;
-    result.code_ = std::move(code_);
-    return result;
+    return made();
   }
 
  private:
+  Expression made() {
+    Expression result;
+    result.text_ = text_;
+    result.code_ = std::exchange(code_, {});
+    return result;
+  }
+
   /// Where a number runs into a word: "59.3mm".
   std::string unit_advice() const {
-    const std::string_view before = text_.substr(0, at_);
+    const std::string_view before = std::string_view(text_).substr(0, at_);
     double number = 0.0;
     const auto read =
         std::from_chars(before.data(), before.data() + before.size(), number);
@@ -89,9 +121,7 @@ class ExpressionParser {
                           static_cast<int>(at_) + 1);
   }
   std::string shown() const {
-    return text_.size() <= kShown
-               ? std::string(text_)
-               : std::string(text_.substr(0, kShown - 3)) + "...";
+    return text_.size() <= kShown ? text_ : text_.substr(0, kShown - 3) + "...";
   }
   // The character at hand, whole when it is UTF-8 of several bytes.
   std::string here() const {
@@ -103,7 +133,7 @@ class ExpressionParser {
            (static_cast<unsigned char>(text_[at_ + size]) & 0xC0U) == 0x80U) {
       ++size;
     }
-    return std::string(text_.substr(at_, size));
+    return text_.substr(at_, size);
   }
   void skip_space() {
     while (at_ < text_.size() && (text_[at_] == ' ' || text_[at_] == '\t')) {
@@ -112,7 +142,7 @@ class ExpressionParser {
   }
   bool take(std::string_view token) {
     skip_space();
-    if (text_.substr(at_, token.size()) != token) {
+    if (text_.compare(at_, token.size(), token) != 0) {
       return false;
     }
     at_ += token.size();
@@ -251,9 +281,14 @@ class ExpressionParser {
            (is_letter(text_[at_]) || is_digit(text_[at_]))) {
       ++at_;
     }
-    const std::string word(text_.substr(column, at_ - column));
+    const std::string word = text_.substr(column, at_ - column);
     if (take("(")) {
       call(word, column);
+      return;
+    }
+    const std::vector<int> shape = shape_of(word, names_);
+    if (!shape.empty()) {
+      element(word, shape, column);
       return;
     }
     const auto known = std::find(names_.begin(), names_.end(), word);
@@ -271,6 +306,81 @@ class ExpressionParser {
     }
     at_ = column;
     fail("unknown name '" + word + "'" + suggestion(word, names_));
+  }
+
+  // Its name stands in the text from here on, so that it says which one it is.
+  void element(const std::string& word, const std::vector<int>& shape,
+               std::size_t column) {
+    if (!take("[")) {
+      at_ = column;
+      fail(
+          fmt::format("'{}' has {} elements: write one of them, {}, counted "
+                      "from 1 by numbers or the i, j, k of repeat,",
+                      word, shape_text(shape), written(word, shape)));
+    }
+    std::vector<double> indices;
+    do {
+      indices.push_back(index(word, shape));
+    } while (take(","));
+    if (!take("]")) {
+      fail(fmt::format("']' is missing before '{}'", here()));
+    }
+    const std::size_t end = std::exchange(at_, column);
+    const std::string found =
+        fmt::format("{}[{}]", word, fmt::join(indices, ","));
+    if (indices.size() != shape.size()) {
+      fail(fmt::format("{} has {} of {} indices: '{}' is {}, written {},",
+                       found, indices.size(), shape.size(), word,
+                       shape_text(shape), written(word, shape)));
+    }
+    for (std::size_t k = 0; k < shape.size(); ++k) {
+      if (!(indices[k] >= 1.0 && indices[k] <= shape[k])) {
+        fail(fmt::format("{} is not there: '{}' is {}, counted from 1,", found,
+                         word, shape_text(shape)));
+      }
+    }
+    const auto known = std::find(names_.begin(), names_.end(), found);
+    emit(Name, column);
+    code_.back().index = static_cast<int>(known - names_.begin());
+    text_.replace(column, end - column, found);
+    at_ = column + found.size();
+  }
+
+  double index(const std::string& word, const std::vector<int>& shape) {
+    skip_space();
+    const std::size_t start = at_;
+    if (at_ < text_.size() && (text_[at_] == ']' || text_[at_] == ',')) {
+      fail(fmt::format("an index is missing: '{}' is {}, written {},", word,
+                       shape_text(shape), written(word, shape)));
+    }
+    std::vector<Expression::Instruction> before = std::exchange(code_, {});
+    comparison();
+    const Expression inner = made();
+    code_ = std::move(before);
+    std::vector<double> values;
+    if (!inner.is_constant()) {
+      values.resize(names_.size());
+    }
+    for (const int name : inner.names_used()) {
+      const auto k = static_cast<std::size_t>(name);
+      if (k >= constants_.size() || !constants_[k]) {
+        at_ = start;
+        fail(
+            fmt::format("an index of '{}' depends on '{}', which moves or has "
+                        "no value: '{}' is {}, its indices constant,",
+                        word, names_[k], word, shape_text(shape)));
+      }
+      values[k] = *constants_[k];
+    }
+    const double value = inner.evaluate(values);
+    if (value != std::floor(value)) {
+      at_ = start;
+      fail(
+          fmt::format("the index {} of '{}' is not whole: '{}' is {}, counted "
+                      "from 1,",
+                      value, word, word, shape_text(shape)));
+    }
+    return value;
   }
 
   void call(const std::string& word, std::size_t column) {
@@ -329,16 +439,18 @@ class ExpressionParser {
     close();
   }
 
-  std::string_view text_;
+  std::string text_;
   const std::vector<std::string>& names_;
+  std::span<const std::optional<double>> constants_;
   std::size_t at_ = 0;
   int depth_ = 0;
   std::vector<Expression::Instruction> code_;
 };
 
 Expression Expression::parse(std::string_view text,
-                             const std::vector<std::string>& names) {
-  return ExpressionParser(text, names).parse();
+                             const std::vector<std::string>& names,
+                             std::span<const std::optional<double>> constants) {
+  return ExpressionParser(text, names, constants).parse();
 }
 
 Measure measure_of(const Expression& expression,

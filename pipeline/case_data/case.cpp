@@ -481,17 +481,6 @@ ShownUnit shown_unit(const Case& input, const DesignVariable& variable) {
   return shown_of(input.units, variable.measure);
 }
 
-std::string design_text(const Case& input, const VectorX& design) {
-  std::string text;
-  for (std::size_t k = 0; k < input.design.size(); ++k) {
-    const DesignVariable& variable = input.design[k];
-    text += fmt::format(
-        "{}{} = {}", k == 0 ? "" : ", ", variable.name,
-        shown_unit(input, variable).text(design[static_cast<Eigen::Index>(k)]));
-  }
-  return text;
-}
-
 std::string unit_of(const UnitSystem& units, const Measure& measure) {
   return is_rate(measure) ? "1/s" : units.unit_of(dimension_of(measure));
 }

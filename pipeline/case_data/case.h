@@ -38,6 +38,7 @@ struct Case {
   std::string answer_hash;  // of all that a study's answer depends on
   UnitSystem units;
   std::vector<DesignVariable> design;
+  std::vector<DesignVector> vectors;  // of these, in their order
   std::vector<Parameter> parameters;
   std::vector<int> parameter_order;  // each after those that it uses
   std::vector<CurveEntry> curves;
@@ -148,8 +149,6 @@ std::string response_unit(const Case& input, int response);
 ShownUnit shown_unit(const Case& input, int response);
 /// What a design variable's numbers are shown in.
 ShownUnit shown_unit(const Case& input, const DesignVariable& variable);
-/// "foot = 25 mm, head = 12 mm".
-std::string design_text(const Case& input, const VectorX& design);
 /// What a number is in whose dimension the case says; empty for others.
 std::string unit_of(const UnitSystem& units, const Measure& measure);
 

@@ -14,6 +14,7 @@
 #include "pipeline/case_data/case_curves.h"
 #include "pipeline/case_data/case_loads.h"
 #include "pipeline/case_data/case_sides.h"
+#include "pipeline/case_data/design_vectors.h"
 
 namespace meniscus::case_data {
 
@@ -495,18 +496,26 @@ void check_numbers(const Case& input, CaseProblems& problems) {
   check_held_loads(input, inputs, problems);
   check_loads(input, inputs, problems);
   check_plausible(input, inputs, problems);
-  for (std::size_t k = 0; k < input.design.size(); ++k) {
-    for (const double end : {input.design[k].lower, input.design[k].upper}) {
+  const auto check_ends = [&](const DesignVariable& variable, std::size_t k) {
+    for (const double end : {variable.lower, variable.upper}) {
       VectorX design = initial;
       design[static_cast<Eigen::Index>(k)] = end;
       const EvaluatedCase there =
           at(design, fmt::format(" (with '{}' at the end of its bounds, {:g})",
-                                 input.design[k].name, end));
+                                 variable.name, end));
       if (problems.empty()) {
         check_merged(input, inputs, there, problems);
         check_fixed_materials(input, inputs, there, problems);
         check_fillets(input, inputs, there, problems);
       }
+    }
+  };
+  for (const DesignRow& row : design_rows(input)) {
+    const std::size_t before = problems.size();
+    // Of a vector the first element that does not fit says it all.
+    for (std::size_t k = row.first;
+         k < row.first + row.count && problems.size() == before; ++k) {
+      check_ends(input.design[k], k);
     }
   }
 }

@@ -13,6 +13,7 @@
 #include "evolve/films/shared_sides.h"
 #include "evolve/start/disk_fill.h"
 #include "pipeline/case_data/case_features.h"
+#include "pipeline/case_data/design_vectors.h"
 
 namespace meniscus::case_data {
 

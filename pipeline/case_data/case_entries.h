@@ -50,6 +50,24 @@ struct DesignVariable {
   Measure measure;  // of all three
 };
 
+/// Design variables that people know by one name: neighbours in the list of all
+/// of them, each named as expressions do, "t[2,3]", the last index running
+/// fastest.
+struct DesignVector {
+  std::string name;
+  std::vector<int> shape;  // one to three counts, each 1 or more
+  std::size_t first = 0;   // its first element among the design variables
+  SourceLine line = 0;
+
+  std::size_t size() const {
+    std::size_t count = 1;
+    for (const int along : shape) {
+      count *= static_cast<std::size_t>(along);
+    }
+    return count;
+  }
+};
+
 struct Parameter {
   std::string name;
   Quantity value;

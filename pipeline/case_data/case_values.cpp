@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "pipeline/case_data/bound_text.h"
+#include "core/math/bound_text.h"
 
 namespace meniscus::case_data {
 

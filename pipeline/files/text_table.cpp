@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -171,6 +172,67 @@ void show_units(const std::map<std::string, std::string>& units,
     for (std::size_t r = 1; r < rows.size() && shown.factor != 1.0; ++r) {
       if (k < rows[r].size()) {
         rows[r][k] = scaled(rows[r][k], shown.factor);
+      }
+    }
+  }
+}
+
+namespace {
+
+/// "t [mm]" of "t[1,2] [mm]"; empty for what is no element.
+std::string vector_head(const std::string& head) {
+  const std::size_t open = head.find('[');
+  const std::size_t close = head.find(']');
+  return open == 0 || close == std::string::npos || head[open - 1] == ' '
+             ? ""
+             : head.substr(0, open) + head.substr(close + 1);
+}
+
+/// "0.5 to 2" of the numbers among the cells.
+std::string range_of(const TextRow& row, std::size_t first, std::size_t last) {
+  std::string least;
+  std::string largest;
+  double low = std::numeric_limits<double>::infinity();
+  double high = -low;
+  for (std::size_t k = first; k < std::min(last, row.size()); ++k) {
+    double value = 0.0;
+    const char* end = row[k].data() + row[k].size();
+    if (std::from_chars(row[k].data(), end, value).ptr != end ||
+        row[k].empty()) {
+      continue;
+    }
+    if (value < low) {
+      low = value;
+      least = row[k];
+    }
+    if (value > high) {
+      high = value;
+      largest = row[k];
+    }
+  }
+  return least == largest ? least : least + " to " + largest;
+}
+
+}  // namespace
+
+void join_elements(std::vector<TextRow>& rows) {
+  for (std::size_t k = 0; !rows.empty() && k < rows[0].size(); ++k) {
+    const std::string head = vector_head(rows[0][k]);
+    std::size_t end = k + 1;
+    while (!head.empty() && end < rows[0].size() &&
+           vector_head(rows[0][end]) == head) {
+      ++end;
+    }
+    if (head.empty()) {
+      continue;
+    }
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      TextRow& row = rows[r];
+      if (k < row.size()) {
+        row[k] = r == 0 ? head : range_of(row, k, end);
+        row.erase(row.begin() + static_cast<std::ptrdiff_t>(k) + 1,
+                  row.begin() +
+                      static_cast<std::ptrdiff_t>(std::min(end, row.size())));
       }
     }
   }

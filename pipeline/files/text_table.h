@@ -23,6 +23,10 @@ std::string aligned_text(const std::vector<TextRow>& rows);
 void show_units(const std::map<std::string, std::string>& units,
                 std::vector<TextRow>& rows);
 
+/// For people: columns "t[1,1] [mm]", "t[1,2] [mm]", ... of numbers become one,
+/// "t [mm]", whose cells say from what to what.
+void join_elements(std::vector<TextRow>& rows);
+
 struct CsvRow {
   int line = 0;  // where it begins, from 1
   TextRow cells;

@@ -4,10 +4,12 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <set>
 
 #include <fmt/format.h>
 
 #include "core/timer.h"
+#include "pipeline/case_data/design_vectors.h"
 #include "pipeline/case_data/response_entries.h"
 #include "pipeline/forward/forward_model.h"
 
@@ -19,56 +21,101 @@ namespace {
 struct Moves {
   std::vector<optimize::Variable> variables;
   Eigen::MatrixXd ways;
+
+  void add(optimize::Variable variable, const VectorX& way) {
+    variables.push_back(std::move(variable));
+    ways.conservativeResize(way.size(), ways.cols() + 1);
+    ways.rightCols(1) = way;
+  }
 };
 
-Moves by_variable(const case_data::Case& input, const VectorX& design) {
+constexpr std::size_t kMostOfVector = 8;  // of a vector, looked at one by one
+
+/// Adds a random direction of the variables from `first` on: parts of their
+/// ranges, evenly from -1 to 1, away from a bound on which a variable lies; a
+/// variable of equal bounds rests.
+void add_direction(const case_data::Case& input, const VectorX& design,
+                   std::size_t first, std::size_t count,
+                   const std::string& name, std::mt19937& random,
+                   Moves& moves) {
+  constexpr double kAtBound = 1e-9;  // of the range
+  double back = std::numeric_limits<double>::infinity();
+  double on = back;
+  VectorX ways = VectorX::Zero(design.size());
+  for (std::size_t k = first; k < first + count; ++k) {
+    const case_data::DesignVariable& v = input.design[k];
+    const double value = design[static_cast<Eigen::Index>(k)];
+    const double range = v.upper - v.lower;
+    const double below = value - v.lower;
+    const double above = v.upper - value;
+    double way = (random() / 2147483648.0 - 1.0) * range;
+    if (below <= kAtBound * range) {
+      way = std::abs(way);
+    } else if (above <= kAtBound * range) {
+      way = -std::abs(way);
+    }
+    ways[static_cast<Eigen::Index>(k)] = way;
+    if (way != 0.0) {
+      on = std::min(on, (way > 0.0 ? above : below) / std::abs(way));
+      const double room = (way > 0.0 ? below : above) / std::abs(way);
+      back = std::min(back, room <= kAtBound ? 0.0 : room);
+    }
+  }
+  moves.add({.name = name, .initial = 0.0, .lower = -back, .upper = on}, ways);
+}
+
+void add_variable(const case_data::Case& input, const VectorX& design,
+                  std::size_t k, Moves& moves) {
+  const case_data::DesignVariable& variable = input.design[k];
+  const auto i = static_cast<Eigen::Index>(k);
+  moves.add({.name = variable.name,
+             .initial = 0.0,
+             .lower = variable.lower - design[i],
+             .upper = variable.upper - design[i]},
+            VectorX::Unit(design.size(), i));
+}
+
+/// So many of the row's variables, all different, in their order.
+std::vector<std::size_t> some_of(const case_data::DesignRow& row,
+                                 std::size_t count, std::mt19937& random) {
+  std::set<std::size_t> chosen;
+  while (chosen.size() < count) {
+    chosen.insert(row.first + random() % row.count);
+  }
+  return {chosen.begin(), chosen.end()};
+}
+
+Moves by_variable(const case_data::Case& input, const VectorX& design,
+                  std::vector<std::string>& sampled) {
+  std::mt19937 random(1);  // the same in each run, on each machine
   Moves moves;
-  moves.ways.setIdentity(design.size(), design.size());
-  for (Eigen::Index k = 0; k < design.size(); ++k) {
-    const case_data::DesignVariable& variable =
-        input.design[static_cast<std::size_t>(k)];
-    moves.variables.push_back({.name = variable.name,
-                               .initial = 0.0,
-                               .lower = variable.lower - design[k],
-                               .upper = variable.upper - design[k]});
+  for (const case_data::DesignRow& row : case_data::design_rows(input)) {
+    if (row.count <= kMostOfVector) {
+      for (std::size_t k = row.first; k < row.first + row.count; ++k) {
+        add_variable(input, design, k, moves);
+      }
+      continue;
+    }
+    for (const std::size_t k : some_of(row, kMostOfVector, random)) {
+      add_variable(input, design, k, moves);
+    }
+    add_direction(input, design, row.first, row.count, row.name + ", direction",
+                  random, moves);
+    sampled.push_back(
+        fmt::format("{}: {} of its {} elements at random and a direction of "
+                    "them all",
+                    row.label(), kMostOfVector, row.count));
   }
   return moves;
 }
 
-/// Parts of the variables' ranges, evenly from -1 to 1, away from a bound on
-/// which a variable lies; a variable of equal bounds rests.
 Moves along_directions(const case_data::Case& input, const VectorX& design,
                        int count) {
-  constexpr double kAtBound = 1e-9;  // of the range
-  std::mt19937 random(1);            // the same in each run, on each machine
+  std::mt19937 random(1);
   Moves moves;
-  moves.ways.resize(design.size(), count);
   for (int d = 0; d < count; ++d) {
-    double back = std::numeric_limits<double>::infinity();
-    double on = back;
-    for (Eigen::Index k = 0; k < design.size(); ++k) {
-      const case_data::DesignVariable& v =
-          input.design[static_cast<std::size_t>(k)];
-      const double range = v.upper - v.lower;
-      const double below = design[k] - v.lower;
-      const double above = v.upper - design[k];
-      double way = (random() / 2147483648.0 - 1.0) * range;
-      if (below <= kAtBound * range) {
-        way = std::abs(way);
-      } else if (above <= kAtBound * range) {
-        way = -std::abs(way);
-      }
-      moves.ways(k, d) = way;
-      if (way != 0.0) {
-        on = std::min(on, (way > 0.0 ? above : below) / std::abs(way));
-        const double room = (way > 0.0 ? below : above) / std::abs(way);
-        back = std::min(back, room <= kAtBound ? 0.0 : room);
-      }
-    }
-    moves.variables.push_back({.name = fmt::format("direction {}", d + 1),
-                               .initial = 0.0,
-                               .lower = -back,
-                               .upper = on});
+    add_direction(input, design, 0, input.design.size(),
+                  fmt::format("direction {}", d + 1), random, moves);
   }
   return moves;
 }
@@ -144,7 +191,7 @@ CaseGradientCheck check_case_gradient(
   // one smooth function.
   const Moves moves = directions > 0
                           ? along_directions(input, design, directions)
-                          : by_variable(input, design);
+                          : by_variable(input, design, check.sampled);
   const optimize::VectorFunction function = [&](const VectorX& x) {
     const Evaluation there = model.evaluate(design + moves.ways * x);
     optimize::VectorAnswer answer{.values = {}, .failure = there.failure};
@@ -173,10 +220,14 @@ std::string gradient_check_text(const case_data::Case& input,
     variables = std::max(variables, row.variable.size());
   }
   std::string text;
-  for (std::size_t k = 0; k < input.design.size(); ++k) {
-    text += fmt::format("{}{} = {:.10g}", k == 0 ? "at " : ", ",
-                        input.design[k].name,
-                        check.design[static_cast<Eigen::Index>(k)]);
+  for (const case_data::DesignRow& row : case_data::design_rows(input)) {
+    text += text.empty() ? "at " : ", ";
+    text +=
+        row.vector == nullptr
+            ? fmt::format("{} = {:.10g}", row.name,
+                          check.design[static_cast<Eigen::Index>(row.first)])
+            : fmt::format("{} = {}", row.label(),
+                          case_data::row_text(input, row, check.design));
   }
   text += fmt::format("\n{:<{}}  {:<{}}  {:>16}  {:>16}  {:>8}  {:>8}  {:>8}\n",
                       "response", responses, "variable", variables, "adjoint",
@@ -188,6 +239,9 @@ std::string gradient_check_text(const case_data::Case& input,
         row.response, responses, row.variable, variables, row.given,
         row.difference, row.step, row.error, row.allowed,
         row.passed ? "" : "  DIFFERS");
+  }
+  for (const std::string& of : check.sampled) {
+    text += of + "\n";
   }
   for (const std::string& name : check.left_out) {
     text += fmt::format("{}: has no derivatives, left out\n", name);

@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "io/vtk_files.h"
 #include "optimize/problem.h"
+#include "pipeline/case_data/design_vectors.h"
 #include "pipeline/store/incumbent.h"
 #include "pipeline/store/refreeze.h"
 
@@ -246,16 +247,13 @@ std::string frame_name(int evaluation) {
 
 std::string frame_caption(const case_data::Case& input,
                           const forward::FilmFrame& frame) {
-  constexpr Eigen::Index kMostDesigns = 3;
+  constexpr std::size_t kMostDesigns = 3;
   constexpr int kMostResponses = 3;
   std::vector<std::string> parts;
-  const std::vector<std::string> designs = case_data::design_names(input);
-  for (Eigen::Index k = 0;
-       k < frame.design.size() && frame.design.size() <= kMostDesigns; ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    parts.push_back(
-        designs[i] + " = " +
-        case_data::shown_unit(input, input.design[i]).text(frame.design[k], 4));
+  const std::vector<case_data::DesignRow> rows = case_data::design_rows(input);
+  for (std::size_t r = 0; rows.size() <= kMostDesigns && r < rows.size(); ++r) {
+    parts.push_back(rows[r].name + " = " +
+                    case_data::row_text(input, rows[r], frame.design, 4));
   }
   const auto add = [&](int k) {
     parts.push_back(

@@ -298,26 +298,17 @@ std::optional<double> CaseTable::constant(const char* key,
 
 std::vector<double> CaseTable::constants(const char* key) const {
   std::vector<double> result;
-  for (const Constant& found : measured_constants(key)) {
-    result.push_back(found.value);
-  }
-  return result;
-}
-
-std::vector<Constant> CaseTable::measured_constants(const char* key) const {
-  std::vector<Constant> result;
   if (!has(key)) {
     return result;
   }
-  const bool pair = find_key(*spec_, key)->type == KeyType::Bounds;
   const toml::array* array = node(key)->as_array();
-  if (array == nullptr || array->empty() || (pair && array->size() != 2)) {
-    note(key, pair ? "two numbers: [least, largest]" : "numbers: [5.0, 2.0]");
+  if (array == nullptr || array->empty()) {
+    note(key, "numbers: [5.0, 2.0]");
     return result;
   }
   const IndexScope scope(*context_, indices_);
   for (const toml::node& item : *array) {
-    if (const auto value = read_measured(*context_, item, dimension(key),
+    if (const auto value = read_constant(*context_, item, dimension(key),
                                          fmt::format("{}.{}", path_, key))) {
       result.push_back(*value);
     }

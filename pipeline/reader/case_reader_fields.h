@@ -25,6 +25,9 @@ class StepEdges;
 
 namespace meniscus::reader {
 
+/// Of one vector of design variables.
+inline constexpr int kMostElements = 4000;
+
 /// Nodes that overrides put into the file: the override's number, from 1.
 using OverriddenNodes = std::map<const toml::node*, int>;
 
@@ -101,7 +104,6 @@ class CaseTable {
   /// The same with the dimension of its text.
   std::optional<Constant> measured(const char* key) const;
   std::vector<double> constants(const char* key) const;
-  std::vector<Constant> measured_constants(const char* key) const;
   std::optional<case_data::QuantityVector> vector(const char* key) const;
   /// Points, and { at = [x, y, z], repeat = n } for several.
   std::vector<case_data::QuantityVector> vectors(const char* key) const;

@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "pipeline/members/member_file.h"
 #include "pipeline/reader/case_reader_tables.h"
-#include "pipeline/reader/member_file.h"
 
 namespace meniscus::reader {
 
@@ -47,7 +47,7 @@ void read_member_tables(CaseContext& context, const toml::table& table,
                             name, described(node)));
       continue;
     }
-    if (!is_member_name(name)) {
+    if (!members::is_member_name(name)) {
       context.problems.add(line,
                            fmt::format("'{}' is no name of a member; expected "
                                        "letters, digits, _ and -",
@@ -92,11 +92,11 @@ std::string read_members(CaseContext& context, const CaseTable& study,
                       path.string()));
       return each;
     }
-    MemberFile members = read_member_file(path.string());
-    for (const std::string& problem : members.problems) {
+    members::MemberFile found = members::read_member_file(path.string());
+    for (const std::string& problem : found.problems) {
       context.problems.add_text(problem);
     }
-    result.study.members = std::move(members.members);
+    result.study.members = std::move(found.members);
   } else if (const toml::table* table = node->as_table()) {
     read_member_tables(context, *table, result);
   } else {

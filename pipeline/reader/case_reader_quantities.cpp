@@ -1,9 +1,10 @@
 #include <cmath>
+#include <regex>
 
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "pipeline/case_data/bound_text.h"
+#include "core/math/bound_text.h"
 #include "pipeline/reader/case_reader_repeat.h"
 
 namespace meniscus::reader {
@@ -12,6 +13,25 @@ namespace {
 
 const char* const kQuantity =
     "a number, an expression in quotes or a value with a unit";
+
+/// Notes which names the expression has, and its text where it has indices.
+void note_use(CaseContext& context, const Expression& expression,
+              const std::string& text) {
+  for (const int name : expression.names_used()) {
+    if (static_cast<std::size_t>(name) < context.used.size()) {
+      context.used[static_cast<std::size_t>(name)] = 1;
+    }
+  }
+  if (text.find('[') == std::string::npos) {
+    return;
+  }
+  for (std::size_t k = 0; k < context.constants.size(); ++k) {
+    if (context.constants[k] &&
+        std::regex_search(text, std::regex("\\b" + context.names[k] + "\\b"))) {
+      context.used[k] = 1;
+    }
+  }
+}
 
 /// `names`: those of the context, and more after them.
 std::optional<case_data::Quantity> read_expression(
@@ -33,7 +53,7 @@ std::optional<case_data::Quantity> read_expression(
   static const std::vector<std::string> letters = {"i", "j", "k"};
   std::string bound = text->get();
   if (!context.indices.empty()) {
-    bound = case_data::with_values(
+    bound = with_values(
         filled(context, bound, context.indices, result.line, key),
         {letters.begin(), letters.begin() + std::ssize(context.indices)},
         std::vector<double>(context.indices.begin(), context.indices.end()));
@@ -45,12 +65,8 @@ std::optional<case_data::Quantity> read_expression(
       result.measure = Measure::of(quantity_powers(bound));
       return result;
     }
-    result.expression = Expression::parse(bound, names);
-    for (const int name : result.expression.names_used()) {
-      if (static_cast<std::size_t>(name) < context.used.size()) {
-        context.used[static_cast<std::size_t>(name)] = 1;
-      }
-    }
+    result.expression = Expression::parse(bound, names, context.constants);
+    note_use(context, result.expression, bound);
     result.measure = measure_of(context, result);
     if (dimension) {
       require_powers(context, result, powers_of(*dimension));

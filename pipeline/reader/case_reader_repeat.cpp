@@ -218,8 +218,10 @@ std::vector<std::vector<int>> copies_of(CaseContext& context,
   }
   for (std::size_t axis = 0; axis < counts.size(); ++axis) {
     const std::string& letter = kLetters[before.size() + axis];
-    if (std::find(context.names.begin(), context.names.end(), letter) !=
-        context.names.end()) {
+    if (std::any_of(context.names.begin(), context.names.end(),
+                    [&](const std::string& name) {
+                      return name.substr(0, name.find('[')) == letter;
+                    })) {
       context.problems.add(
           context.line_of(node),
           fmt::format("{} counts with {}, which is also a parameter or design "

@@ -1,9 +1,9 @@
-#include <algorithm>
 #include <cstdint>
 
 #include <fmt/format.h>
 
 #include "optimize/samples/sampling.h"
+#include "pipeline/case_data/design_vectors.h"
 #include "pipeline/reader/case_reader_study.h"
 
 namespace meniscus::reader {
@@ -27,19 +27,15 @@ void read_levels(CaseContext& context, const CaseTable& table,
     return;
   }
   result.study.levels.assign(result.design.size(), 0);
-  std::vector<std::string> names;
-  names.reserve(result.design.size());
-  for (const case_data::DesignVariable& variable : result.design) {
-    names.push_back(variable.name);
-  }
   double designs = 1.0;
   for (const auto& [key, value] : *levels) {
     const std::string name(key.str());
-    const auto at = std::find(names.begin(), names.end(), name);
+    const std::vector<std::size_t> moved =
+        case_data::positions_of(result, name);
     const auto number = value.value_exact<std::int64_t>();
-    if (at == names.end()) {
+    if (moved.empty()) {
       context.problems.unknown(context.line_of(value), "design variable", name,
-                               names);
+                               case_data::row_names(result));
     } else if (!number || *number < 1 || *number > kMostDesigns) {
       context.problems.add(
           context.line_of(value),
@@ -47,9 +43,10 @@ void read_levels(CaseContext& context, const CaseTable& table,
                       "to {}",
                       name, described(value), kMostDesigns));
     } else {
-      result.study.levels[static_cast<std::size_t>(at - names.begin())] =
-          static_cast<int>(*number);
-      designs *= static_cast<double>(*number);
+      for (const std::size_t k : moved) {
+        result.study.levels[k] = static_cast<int>(*number);
+        designs *= static_cast<double>(*number);
+      }
     }
   }
   if (designs > kMostDesigns) {

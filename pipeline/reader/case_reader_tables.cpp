@@ -2,10 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <regex>
 #include <set>
-#include <string_view>
 
 #include <fmt/format.h>
 
@@ -94,195 +91,6 @@ bool is_name(const std::string& name) {
          std::all_of(name.begin(), name.end(), [&](char c) {
            return letter(c) || (c >= '0' && c <= '9');
          });
-}
-
-void check_name(CaseContext& context, const std::string& name,
-                const std::string& table, case_data::SourceLine line) {
-  if (!is_name(name)) {
-    context.problems.add(
-        line, fmt::format("{}.{}: '{}' is no name; expected letters, digits "
-                          "and _, no digit first",
-                          table, name, name));
-  }
-}
-
-/// Parameters in the file's order; toml++ sorts by name. What an override put
-/// there keeps its place: the key's.
-std::vector<std::pair<std::string, const toml::node*>> in_file_order(
-    const toml::table* parameters) {
-  std::vector<std::pair<toml::source_position, std::string>> order;
-  for (const auto& [key, node] : *parameters) {
-    order.emplace_back(key.source().begin, key.str());
-  }
-  std::stable_sort(
-      order.begin(), order.end(),
-      [](const auto& a, const auto& b) { return a.first < b.first; });
-  std::vector<std::pair<std::string, const toml::node*>> found;
-  found.reserve(order.size());
-  for (const auto& [position, name] : order) {
-    found.emplace_back(name, parameters->get(name));
-  }
-  return found;
-}
-
-/// All names that expressions know: design variables, then parameters.
-void claim_names(CaseContext& context, const std::vector<CaseTable>& design,
-                 const toml::table* parameters, case_data::Case& result) {
-  std::map<std::string, case_data::SourceLine> seen;
-  const auto claim = [&](const std::string& name, case_data::SourceLine line) {
-    if (is_reserved_name(name)) {
-      context.problems.add(line,
-                           fmt::format("'{}' is a name that expressions know "
-                                       "already; choose another",
-                                       name));
-    } else if (!seen.emplace(name, line).second) {
-      context.problems.add(
-          line, fmt::format("'{}' is both a parameter and a design variable "
-                            "(line {}); rename one",
-                            name, seen[name]));
-    }
-    context.names.push_back(name);
-  };
-  for (const CaseTable& table : design) {
-    claim(table.name(), table.line());
-    result.design.push_back({.name = table.name(), .line = table.line()});
-  }
-  if (parameters != nullptr) {
-    for (const auto& [name, node] : in_file_order(parameters)) {
-      check_name(context, name, "parameters", context.line_of(*node));
-      claim(name, context.line_of(*node));
-    }
-  }
-  context.used.assign(context.names.size(), 0);
-}
-
-/// Values of the parameters that no design variable moves.
-void find_constants(CaseContext& context, const case_data::Case& result) {
-  context.constants.assign(context.names.size(), std::nullopt);
-  const std::size_t first = context.names.size() - result.parameters.size();
-  for (const int k : result.parameter_order) {
-    const Expression& expression =
-        result.parameters[static_cast<std::size_t>(k)].value.expression;
-    std::vector<double> values(context.names.size(), 0.0);
-    bool constant = true;
-    for (const int name : expression.names_used()) {
-      const auto& value = context.constants[static_cast<std::size_t>(name)];
-      constant = constant && value.has_value();
-      values[static_cast<std::size_t>(name)] = value.value_or(0.0);
-    }
-    if (constant) {
-      try {
-        context.constants[first + static_cast<std::size_t>(k)] =
-            expression.evaluate(values);
-      } catch (const ExpressionError&) {
-        continue;  // told when the case's numbers are checked
-      }
-    }
-  }
-}
-
-/// A name without a unit may stand for anything.
-Measure of_a_name(const Measure& measure) {
-  return measure.is_known() ? measure : Measure{};
-}
-
-/// Dimensions of all names from those of the design variables; problems are
-/// those of `context`.
-void find_measures(CaseContext& context, case_data::Case& result) {
-  const std::size_t first = result.design.size();
-  context.measures.assign(context.names.size(), {});
-  for (std::size_t k = 0; k < first; ++k) {
-    context.measures[k] = of_a_name(result.design[k].measure);
-  }
-  for (const int k : result.parameter_order) {
-    const auto i = static_cast<std::size_t>(k);
-    case_data::Quantity& value = result.parameters[i].value;
-    if (!value.expression.is_constant()) {
-      value.measure = measure_of(context, value);
-    }
-    context.measures[first + i] = of_a_name(value.measure);
-  }
-}
-
-void read_parameters(CaseContext& context, const toml::table* parameters,
-                     case_data::Case& result) {
-  if (parameters != nullptr) {
-    for (const auto& [name, node] : in_file_order(parameters)) {
-      const case_data::Quantity zero{.line = context.line_of(*node),
-                                     .key = "parameters." + name};
-      result.parameters.push_back(
-          {name, read_quantity(context, *node, std::nullopt, zero.key)
-                     .value_or(zero)});
-    }
-  }
-  case_data::order_parameters(result, context.problems);
-  find_constants(context, result);
-  // For the numbers of design variables, which know no other of them; what does
-  // not fit is told once these are known too.
-  case_data::CaseProblems later(result.path, result.overrides);
-  CaseContext silent{.problems = later,
-                     .overridden = context.overridden,
-                     .names = context.names};
-  find_measures(silent, result);
-  context.measures = std::move(silent.measures);
-}
-
-/// What the initial value or a bound says; notes where they differ.
-Measure measure_of_variable(CaseContext& context, const CaseTable& table,
-                            const std::optional<Constant>& initial,
-                            const std::vector<Constant>& bounds) {
-  Measure found = initial ? initial->measure : Measure{};
-  const char* from = "initial";
-  for (const Constant& bound : bounds) {
-    if (!bound.measure.is_known()) {
-      continue;
-    }
-    if (found.is_known() && !(found.powers == bound.measure.powers)) {
-      context.problems.add(
-          table.line("bounds"),
-          fmt::format("{}.bounds: {:g} is {}, and {} {}; a variable and its "
-                      "bounds are of one dimension",
-                      table.path(), bound.value,
-                      described(bound.measure.powers), from,
-                      described(found.powers)));
-      return {};
-    }
-    if (!found.is_known()) {
-      found = bound.measure;
-      from = "the other bound";
-    }
-  }
-  return found;
-}
-
-void read_design(const std::vector<CaseTable>& tables, CaseContext& context,
-                 case_data::Case& result) {
-  for (std::size_t k = 0; k < tables.size(); ++k) {
-    const CaseTable& table = tables[k];
-    case_data::DesignVariable& variable = result.design[k];
-    const auto initial = table.measured("initial");
-    const std::vector<Constant> bounds = table.measured_constants("bounds");
-    variable.initial = initial.value_or(Constant{}).value;
-    variable.measure = measure_of_variable(context, table, initial, bounds);
-    if (bounds.size() == 2) {
-      variable.lower = bounds[0].value;
-      variable.upper = bounds[1].value;
-      if (!(variable.lower <= variable.upper)) {
-        context.problems.add(
-            table.line("bounds"),
-            fmt::format("{}.bounds are [{:g}, {:g}]; the first must not be "
-                        "above the second",
-                        table.path(), variable.lower, variable.upper));
-      } else if (initial && (variable.initial < variable.lower ||
-                             variable.initial > variable.upper)) {
-        context.problems.add(
-            table.line("initial"),
-            fmt::format("{}.initial is {:g}, outside its bounds [{:g}, {:g}]",
-                        table.path(), variable.initial, variable.lower,
-                        variable.upper));
-      }
-    }
-  }
 }
 
 /// How far rims of facets may lie off their curves, where it is not said.
@@ -378,53 +186,17 @@ void read_symmetry(CaseContext& context, const toml::table& root,
   case_data::check_planes(result, context.problems);
 }
 
-/// Does some text of the node's entries match? Of tables only what stands under
-/// a key for quantities, unless `within` one.
-bool has_quantity(const toml::node& node, const std::regex& pattern,
-                  bool within) {
-  static const std::set<std::string_view> kQuantities = {
-      "min", "max", "targets", "tolerance", "deviations", "members"};
-  if (const auto* table = node.as_table()) {
-    return std::any_of(table->begin(), table->end(), [&](const auto& entry) {
-      return has_quantity(entry.second, pattern,
-                          within || kQuantities.count(entry.first.str()) > 0);
-    });
-  }
-  if (const auto* array = node.as_array()) {
-    return std::any_of(array->begin(), array->end(), [&](const auto& entry) {
-      return has_quantity(entry, pattern, within);
-    });
-  }
-  const auto* text = node.as_string();
-  return within && text != nullptr && std::regex_search(text->get(), pattern);
-}
-
-/// Studies of one kind leave the keys of others unread: what stands there is
-/// used, and so may be what follows a mistake.
-void warn_of_unused(CaseContext& context, const toml::table& root,
-                    const case_data::Case& result) {
-  if (!context.problems.empty()) {
-    return;
-  }
-  const toml::node* study = root.get("study");
-  const auto in_study = [&](const std::string& name) {
-    return study != nullptr &&
-           has_quantity(*study, std::regex("\\b" + name + "\\b"), false);
-  };
-  for (std::size_t k = 0; k < context.names.size(); ++k) {
-    const bool is_design = k < result.design.size();
-    if (context.used[k] == 0 && !in_study(context.names[k])) {
-      context.problems.warn(
-          is_design ? result.design[k].line
-                    : result.parameters[k - result.design.size()].value.line,
-          fmt::format("{} '{}' is not used",
-                      is_design ? "design variable" : "parameter",
-                      context.names[k]));
-    }
-  }
-}
-
 }  // namespace
+
+void check_name(CaseContext& context, const std::string& name,
+                const std::string& table, case_data::SourceLine line) {
+  if (!is_name(name)) {
+    context.problems.add(
+        line, fmt::format("{}.{}: '{}' is no name; expected letters, digits "
+                          "and _, no digit first",
+                          table, name, name));
+  }
+}
 
 std::vector<CaseTable> named_tables(CaseContext& context,
                                     const toml::table& root,
@@ -493,19 +265,7 @@ void read_tables(const toml::table& root, const OverriddenNodes& overridden,
   CaseContext context{.problems = problems, .overridden = overridden};
   check_top(context, root);
   read_head(context, root, result);
-  const toml::node* node = root.get("parameters");
-  const toml::table* parameters = node == nullptr ? nullptr : node->as_table();
-  if (node != nullptr && parameters == nullptr) {
-    problems.add(context.line_of(*node),
-                 fmt::format("parameters is {}; expected a table [parameters] "
-                             "with name = value",
-                             described(*node)));
-  }
-  const std::vector<CaseTable> design = named_tables(context, root, "design");
-  claim_names(context, design, parameters, result);
-  read_parameters(context, parameters, result);
-  read_design(design, context, result);
-  find_measures(context, result);
+  read_names(context, root, result);
   read_symmetry(context, root, result);
   read_geometry(context, root, result);
   read_walls(context, root, result);

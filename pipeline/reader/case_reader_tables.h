@@ -14,6 +14,19 @@ namespace meniscus::reader {
 void read_tables(const toml::table& root, const OverriddenNodes& overridden,
                  case_data::CaseProblems& problems, case_data::Case& result);
 
+/// Design variables and parameters, the names that expressions know: first of
+/// all.
+void read_names(CaseContext& context, const toml::table& root,
+                case_data::Case& result);
+
+/// Of those that nothing uses; last of all.
+void warn_of_unused(CaseContext& context, const toml::table& root,
+                    const case_data::Case& result);
+
+/// Notes what is no name of an entry of `table`.
+void check_name(CaseContext& context, const std::string& name,
+                const std::string& table, case_data::SourceLine line);
+
 /// The tables [`table`.NAME] in the order of the file.
 std::vector<CaseTable> named_tables(CaseContext& context,
                                     const toml::table& root, const char* table);

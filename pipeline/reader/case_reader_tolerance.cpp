@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "optimize/samples/sampling.h"
+#include "pipeline/case_data/design_vectors.h"
 #include "pipeline/reader/case_reader_study.h"
 
 namespace meniscus::reader {
@@ -15,16 +16,9 @@ constexpr int kMostFrontPoints = 1000;
 
 void read_deviation(CaseContext& context, const std::string& name,
                     const toml::node& node, case_data::Case& result) {
-  const auto at = std::find_if(result.design.begin(), result.design.end(),
-                               [&](const case_data::DesignVariable& variable) {
-                                 return variable.name == name;
-                               });
-  if (at == result.design.end()) {
-    std::vector<std::string> names;
-    names.reserve(result.design.size());
-    for (const case_data::DesignVariable& variable : result.design) {
-      names.push_back(variable.name);
-    }
+  const std::vector<std::size_t> moved = case_data::positions_of(result, name);
+  if (moved.empty()) {
+    std::vector<std::string> names = case_data::row_names(result);
     for (const case_data::Parameter& parameter : result.parameters) {
       names.push_back(parameter.name);
     }
@@ -33,8 +27,9 @@ void read_deviation(CaseContext& context, const std::string& name,
     return;
   }
   const std::string key = "study.deviations." + name;
+  const Measure measure = result.design[moved.front()].measure;
   const auto given = read_measured(context, node, std::nullopt, key);
-  if (given && given->measure.is_known() && !at->measure.is_known()) {
+  if (given && given->measure.is_known() && !measure.is_known()) {
     context.problems.add(
         context.line_of(node),
         fmt::format("{} is {}, and '{}' is a plain number; give both a unit or "
@@ -42,7 +37,7 @@ void read_deviation(CaseContext& context, const std::string& name,
                     key, described(node), name));
     return;
   }
-  const auto value = read_like(context, node, at->measure, key);
+  const auto value = read_like(context, node, measure, key);
   if (value && !(*value > 0.0)) {
     context.problems.add(context.line_of(node),
                          fmt::format("study.deviations.{} is {:g}; a standard "
@@ -50,9 +45,9 @@ void read_deviation(CaseContext& context, const std::string& name,
                                      name, *value));
     return;
   }
-  result.study
-      .deviations[static_cast<std::size_t>(at - result.design.begin())] =
-      value.value_or(0.0);
+  for (const std::size_t k : moved) {
+    result.study.deviations[k] = value.value_or(0.0);
+  }
 }
 
 }  // namespace
@@ -73,13 +68,16 @@ void read_tolerance(CaseContext& context, const CaseTable& table,
   for (const auto& [key, value] : *deviations) {
     read_deviation(context, std::string(key.str()), value, result);
   }
+  const std::vector<double>& all = result.study.deviations;
+  const auto scatter =
+      std::count_if(all.begin(), all.end(), [](double d) { return d > 0.0; });
   if (result.study.method == "sobol" &&
-      static_cast<int>(deviations->size()) > samples::kMostSobolDimensions) {
+      scatter > samples::kMostSobolDimensions) {
     context.problems.add(
         table.line("deviations"),
         fmt::format("method sobol serves {} variables that scatter at most, "
                     "found {}; try latin_hypercube",
-                    samples::kMostSobolDimensions, deviations->size()));
+                    samples::kMostSobolDimensions, scatter));
   }
   if (result.study.method == "sobol" && table.has("seed")) {
     context.problems.add(table.line("seed"),

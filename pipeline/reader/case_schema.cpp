@@ -34,9 +34,14 @@ std::vector<TableSpec> make_tables() {
        true,
        N::Optional,
        "A design variable: what the optimizer moves",
-       {{"initial", K::Constant, std::nullopt, true,
-         "value at which the model freezes and the study starts"},
-        {"bounds", K::Bounds, std::nullopt, true, "[least, largest]"}}},
+       {{"shape", K::Shape, D::None, false,
+         "makes a vector of so many elements, [8, 4] a table of 32: "
+         "expressions write NAME[i, j], counted from 1"},
+        {"initial", K::Elements, std::nullopt, true,
+         "value at which the model freezes and the study starts; of a vector "
+         "for all elements, or nested arrays of its shape"},
+        {"bounds", K::Bounds, std::nullopt, true,
+         "[least, largest], each as initial"}}},
       {"symmetry",
        false,
        N::Optional,

@@ -20,6 +20,7 @@ enum class KeyType {
   NamesOrNumbers,  // one or an array of them, of things in a file
   Integer,
   Counts,          // one to three integers
+  Shape,           // the same, as numbers alone
   Flag,            // true or false
   Quantity,        // number, expression or "value unit"
   Quantities,      // one, or an array of them
@@ -33,7 +34,8 @@ enum class KeyType {
   PlaceVector,     // array of three places
   Axes,            // two arrays of three constants
   Rims,            // array of "base", "seat" or a quantity each; or of edges
-  Bounds,          // array of two constants
+  Elements,        // a constant, or nested arrays of them
+  Bounds,          // array of two of these
   Constants,       // array of constants
   ConstantMap,     // inline table: response = constant, of its dimension
   IntegerMap,      // inline table: design variable = integer

@@ -29,6 +29,7 @@ const char* type_text(const KeySpec& key) {
     case K::Integer:
       return "integer";
     case K::Counts:
+    case K::Shape:
       return "integers";
     case K::Flag:
       return "true or false";
@@ -55,8 +56,10 @@ const char* type_text(const KeySpec& key) {
       return "2 directions";
     case K::Rims:
       return "base, seat or quantity; edges";
+    case K::Elements:
+      return "constant or arrays";
     case K::Bounds:
-      return "2 constants";
+      return "2 constants or arrays";
     case K::Constants:
       return "constants";
     case K::ConstantMap:
@@ -83,10 +86,11 @@ const char* dimension_text(const KeySpec& key) {
       key.type != K::Text && key.type != K::Choice && key.type != K::Name &&
       key.type != K::Names && key.type != K::NameOrNames &&
       key.type != K::NamesOrNumbers && key.type != K::Integer &&
-      key.type != K::Counts && key.type != K::Facets && key.type != K::Flag &&
-      key.type != K::IntegerMap && key.type != K::Supports &&
-      key.type != K::Loads && key.type != K::Zones && key.type != K::Planes &&
-      key.type != K::Constraints && key.type != K::Members;
+      key.type != K::Counts && key.type != K::Shape && key.type != K::Facets &&
+      key.type != K::Flag && key.type != K::IntegerMap &&
+      key.type != K::Supports && key.type != K::Loads && key.type != K::Zones &&
+      key.type != K::Planes && key.type != K::Constraints &&
+      key.type != K::Members;
   if (key.type == K::ConstantMap) {
     return "the response's";
   }
@@ -146,6 +150,18 @@ Json counts_schema() {
   return {{"anyOf", {count, several}}};
 }
 
+/// A constant, or arrays of them up to three deep.
+Json elements_schema() {
+  const Json constant = {{"type", {"number", "string"}}};
+  Json schema = constant;
+  for (int level = 0; level < 3; ++level) {
+    const Json several = {
+        {"type", "array"}, {"items", schema}, {"minItems", 1}};
+    schema = {{"anyOf", {constant, several}}};
+  }
+  return schema;
+}
+
 /// { `key` = item, repeat = n } in a list.
 Json repeated(const char* key, const Json& item) {
   return {{"type", "object"},
@@ -188,6 +204,10 @@ Json type_schema(const KeySpec& key) {
       return {{"type", "integer"}};
     case K::Counts:
       return counts_schema();
+    case K::Shape: {
+      const Json count = {{"type", "integer"}, {"minimum", 1}};
+      return {{"anyOf", {count, array(count, 1, 3)}}};
+    }
     case K::Flag:
       return {{"type", "boolean"}};
     case K::Quantity:
@@ -221,8 +241,10 @@ Json type_schema(const KeySpec& key) {
           {{"anyOf",
             {quantity, array({{"type", {"string", "integer"}}}, 1, 0)}}},
           1, 0);
+    case K::Elements:
+      return elements_schema();
     case K::Bounds:
-      return array(quantity, 2, 2);
+      return array(elements_schema(), 2, 2);
     case K::Constants:
       return array(quantity, 1, 0);
     case K::ConstantMap:

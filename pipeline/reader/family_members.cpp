@@ -4,7 +4,7 @@
 
 #include "core/error.h"
 #include "pipeline/case_data/study_kinds.h"
-#include "pipeline/reader/member_file.h"
+#include "pipeline/members/member_file.h"
 
 namespace meniscus::reader {
 
@@ -51,7 +51,7 @@ std::vector<std::string> member_problems(const case_data::Case& family) {
   std::size_t more = 0;
   for (const case_data::MemberEntry& member : family.study.members) {
     for (std::string& problem : read_family_member(family, member).problems) {
-      if (problems.size() < kMostProblems) {
+      if (problems.size() < members::kMostProblems) {
         problems.push_back(std::move(problem));
       } else {
         ++more;

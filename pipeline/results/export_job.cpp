@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "pipeline/case_data/design_vectors.h"
 #include "pipeline/case_films/film_options.h"
 #include "pipeline/case_films/film_start.h"
 #include "pipeline/forward/design_stages.h"
@@ -125,9 +126,13 @@ io::FileNotes ExportJob::notes() const {
                       .unit = input_.units.length,
                       .unit_system = input_.units.name,
                       .lines = {"case name: " + input_.name}};
-  for (std::size_t k = 0; k < input_.design.size(); ++k) {
-    notes.lines.push_back(fmt::format("{} = {}", input_.design[k].name,
-                                      design_[static_cast<Eigen::Index>(k)]));
+  for (const case_data::DesignRow& row : case_data::design_rows(input_)) {
+    const auto at = static_cast<Eigen::Index>(row.first);
+    notes.lines.push_back(
+        row.vector == nullptr
+            ? fmt::format("{} = {}", row.name, design_[at])
+            : fmt::format("{} = {}", row.label(),
+                          case_data::row_text(input_, row, design_)));
   }
   return notes;
 }

@@ -7,9 +7,11 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "pipeline/case_data/design_vectors.h"
 #include "pipeline/files/text_table.h"
 #include "pipeline/forward/figures_json.h"
 #include "pipeline/results/results.h"
+#include "pipeline/store/named_values.h"
 
 namespace meniscus::results {
 
@@ -26,24 +28,14 @@ FamilyRow::Numbers numbers_of(const Json& result, const char* key,
                               const std::vector<std::string>& names) {
   FamilyRow::Numbers numbers;
   for (const std::string& name : names) {
-    if (result.contains(key) && result[key].contains(name)) {
-      numbers.emplace_back(name, number(result[key][name]));
+    const Json* value =
+        result.contains(key) ? store::find_named(result[key], name) : nullptr;
+    if (value != nullptr) {
+      numbers.emplace_back(name, number(*value));
     }
   }
   return numbers;
 }
-
-Json object(const FamilyRow::Numbers& numbers) {
-  Json json = Json::object();
-  for (const auto& [name, value] : numbers) {
-    json[name] = value;
-  }
-  return json;
-}
-
-constexpr const char* kError = "_error";
-constexpr const char* kAtBoundColumn = "at_bound";
-constexpr const char* kMissedColumn = "missed";
 
 std::vector<std::string> names_of(const FamilyRow::Numbers& numbers) {
   std::vector<std::string> names;
@@ -53,6 +45,22 @@ std::vector<std::string> names_of(const FamilyRow::Numbers& numbers) {
   }
   return names;
 }
+
+VectorX values_of(const FamilyRow::Numbers& numbers) {
+  VectorX values(std::ssize(numbers));
+  for (std::size_t k = 0; k < numbers.size(); ++k) {
+    values[static_cast<Eigen::Index>(k)] = numbers[k].second;
+  }
+  return values;
+}
+
+Json object(const FamilyRow::Numbers& numbers) {
+  return store::named_json(names_of(numbers), values_of(numbers));
+}
+
+constexpr const char* kError = "_error";
+constexpr const char* kAtBoundColumn = "at_bound";
+constexpr const char* kMissedColumn = "missed";
 
 void add_cells(const FamilyRow::Numbers& numbers,
                const std::vector<std::string>& columns, files::TextRow& cells) {
@@ -131,6 +139,21 @@ void drop_empty_columns(std::vector<files::TextRow>& table) {
   }
 }
 
+/// "foot (lower)", "t (3 lower)" of variables that stand at a bound.
+void add_bounds(const case_data::Case& member,
+                const case_data::DesignRow& variables, FamilyRow& row) {
+  for (const std::string side : {"lower", "upper"}) {
+    const std::size_t count =
+        count_at_bound(member, variables, values_of(row.design), side);
+    if (count > 0) {
+      row.at_bound.push_back(
+          variables.vector == nullptr
+              ? fmt::format("{} ({})", variables.name, side)
+              : fmt::format("{} ({} {})", variables.name, count, side));
+    }
+  }
+}
+
 std::vector<std::string> missed_by(const FamilyRow& row) {
   std::vector<std::string> missed;
   for (const study::Constraint& constraint : row.constraints) {
@@ -164,14 +187,10 @@ FamilyRow family_row(const case_data::Case& member, const Json& result) {
       row.errors.push_back(error);
     }
   }
-  for (const case_data::DesignVariable& variable : member.design) {
-    const std::string side =
-        row.design.empty()
-            ? ""
-            : bound_reached(variable, number(result["parameters"].value(
-                                          variable.name, Json())));
-    if (!side.empty()) {
-      row.at_bound.push_back(fmt::format("{} ({})", variable.name, side));
+  if (row.design.size() == member.design.size()) {
+    for (const case_data::DesignRow& variables :
+         case_data::design_rows(member)) {
+      add_bounds(member, variables, row);
     }
   }
   row.objective = number(result.value("objective", Json()));
@@ -249,6 +268,7 @@ std::string family_table_text(const std::string& csv,
     with_errors.emplace(name + kError, unit);
   }
   files::show_units(with_errors, table);
+  files::join_elements(table);
   join_errors(table);
   drop_empty_columns(table);
   return table.empty() ? "" : files::aligned_text(table) + messages;

@@ -22,6 +22,7 @@
 #include "pipeline/forward/walls.h"
 #include "pipeline/results/export_part.h"
 #include "pipeline/results/run_files.h"
+#include "pipeline/store/named_values.h"
 #include "pipeline/store/refreeze.h"
 #include "pipeline/store/stored_case.h"
 #include "pipeline/store/study_table.h"
@@ -133,7 +134,7 @@ Json value_map(const std::vector<std::string>& names, const VectorX& values) {
 }
 
 Json parameters_json(const case_data::Case& input, const VectorX& design) {
-  Json json = value_map(case_data::design_names(input), design);
+  Json json = store::named_json(case_data::design_names(input), design);
   for (const auto& [name, value] : case_data::parameter_values(input, design)) {
     json[name] = value;
   }
@@ -155,9 +156,10 @@ Json coarse_json(const case_data::Case& input,
   const bool answered = coarse.design.size() > 0;
   return {{"edge_factor", coarse.edge_factor},
           {"message", coarse.message},
-          {"parameters",
-           answered ? value_map(case_data::design_names(input), coarse.design)
-                    : Json()},
+          {"parameters", answered
+                             ? store::named_json(case_data::design_names(input),
+                                                 coarse.design)
+                             : Json()},
           {"evaluations", coarse.evaluations},
           {"gradient_evaluations", coarse.gradients}};
 }
@@ -169,7 +171,8 @@ Json refrozen_json(const case_data::Case& input,
     json.push_back(
         {{"evaluation", r.evaluation},
          {"reason", r.reason},
-         {"parameters", value_map(case_data::design_names(input), r.design)},
+         {"parameters",
+          store::named_json(case_data::design_names(input), r.design)},
          {"responses",
           value_map(case_data::response_names(input), r.responses)},
          {"shift", value_map(case_data::response_names(input), r.shift)}});
@@ -273,11 +276,12 @@ nlohmann::ordered_json result_json(const case_data::Case& input,
         {"responses", value_map(names, result.element_errors->responses)}};
   }
   json["parameter_errors"] =
-      value_map(case_data::design_names(input), result.design_errors);
+      store::named_json(case_data::design_names(input), result.design_errors);
   if (result.start) {
-    json["start"] = {{"parameters", value_map(case_data::design_names(input),
-                                              result.start->design)},
-                     {"responses", value_map(names, result.start->responses)}};
+    json["start"] = {
+        {"parameters", store::named_json(case_data::design_names(input),
+                                         result.start->design)},
+        {"responses", value_map(names, result.start->responses)}};
   }
   json["evaluations"] = result.evaluations;
   json["failed_evaluations"] = result.failed_evaluations;

@@ -4,11 +4,13 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "pipeline/case_data/design_vectors.h"
 #include "pipeline/study/study.h"
 
 namespace meniscus::results {
@@ -80,6 +82,11 @@ void write_summary(const case_data::Case& input, const study::RunResult& result,
                    const std::vector<store::EvaluationRecord>& records,
                    const std::string& program_version,
                    const std::filesystem::path& folder);
+
+/// How many of the row's variables stand at that bound, "lower" or "upper".
+std::size_t count_at_bound(const case_data::Case& input,
+                           const case_data::DesignRow& row,
+                           const VectorX& design, std::string_view side);
 
 /// "lower" or "upper" where a variable stands at a bound, to 1e-5 of its range.
 std::string bound_reached(const case_data::DesignVariable& variable,

@@ -5,6 +5,7 @@
 
 #include "core/count_text.h"
 #include "pipeline/case_data/composed_responses.h"
+#include "pipeline/case_data/design_vectors.h"
 #include "pipeline/case_data/response_entries.h"
 #include "pipeline/case_data/study_kinds.h"
 #include "pipeline/forward/eigen_figures.h"
@@ -15,6 +16,23 @@ namespace meniscus::results {
 
 namespace {
 
+/// All finite ones of a row; "up to" the largest where there are several.
+std::string row_error(const case_data::Case& input,
+                      const case_data::DesignRow& row, const VectorX& errors) {
+  double largest = -1.0;
+  for (std::size_t k = row.first; k < row.first + row.count; ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    if (i < errors.size() && std::isfinite(errors[i])) {
+      largest = std::max(largest, errors[i]);
+    }
+  }
+  return largest < 0.0
+             ? ""
+             : fmt::format("  +- {}{}", row.vector == nullptr ? "" : "up to ",
+                           case_data::shown_unit(input, input.design[row.first])
+                               .text(largest, 2));
+}
+
 std::string with_error(double value, const VectorX& errors, Eigen::Index k,
                        const ShownUnit& unit) {
   std::string text = unit.text(value);
@@ -24,17 +42,34 @@ std::string with_error(double value, const VectorX& errors, Eigen::Index k,
   return text;
 }
 
-/// "   at its lower bound" of a variable that a study moved there.
-std::string at_bound(const case_data::DesignVariable& variable, double value) {
-  const std::string side = bound_reached(variable, value);
-  return side.empty() ? "" : fmt::format("   at its {} bound", side);
+/// "   at its lower bound", "   3 at their lower bound" of variables that a
+/// study moved there.
+std::string at_bound(const case_data::Case& input,
+                     const case_data::DesignRow& row, const VectorX& design) {
+  std::string text;
+  for (const std::string side : {"lower", "upper"}) {
+    const std::size_t count = count_at_bound(input, row, design, side);
+    if (count > 0) {
+      text += row.vector == nullptr
+                  ? fmt::format("   at its {} bound", side)
+                  : fmt::format("   {} at their {} bound", count, side);
+    }
+  }
+  return text;
 }
 
-/// Of a variable that the targets of a match do not hold.
-std::string free_text(const VectorX& errors, Eigen::Index k) {
-  return k < errors.size() && std::isnan(errors[k])
-             ? "   not fixed by the targets"
-             : "";
+/// Of variables that the targets of a match do not hold.
+std::string free_text(const case_data::DesignRow& row, const VectorX& errors) {
+  std::size_t count = 0;
+  for (std::size_t k = row.first; k < row.first + row.count; ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    count += i < errors.size() && std::isnan(errors[i]) ? 1 : 0;
+  }
+  return count == 0
+             ? ""
+             : fmt::format(
+                   "   {}not fixed by the targets",
+                   row.vector == nullptr ? "" : fmt::format("{} ", count));
 }
 
 /// What another mesh changed most, relative to the answer.
@@ -134,6 +169,17 @@ std::string bound_reached(const case_data::DesignVariable& variable,
                                           : "";
 }
 
+std::size_t count_at_bound(const case_data::Case& input,
+                           const case_data::DesignRow& row,
+                           const VectorX& design, std::string_view side) {
+  std::size_t count = 0;
+  for (std::size_t k = row.first; k < row.first + row.count; ++k) {
+    const double value = design[static_cast<Eigen::Index>(k)];
+    count += bound_reached(input.design[k], value) == side ? 1 : 0;
+  }
+  return count;
+}
+
 std::string result_text(const case_data::Case& input,
                         const study::RunResult& result) {
   std::string text;
@@ -141,15 +187,13 @@ std::string result_text(const case_data::Case& input,
     return text;
   }
   const forward::Evaluation& best = *result.best;
-  const std::vector<std::string> designs = case_data::design_names(input);
   const bool moves = input.study.kind != case_data::StudyKind::Analyse;
-  for (Eigen::Index k = 0; k < best.design.size(); ++k) {
-    const case_data::DesignVariable& variable = input.design[k];
-    text += fmt::format("  {:<20} {}{}\n", designs[k],
-                        with_error(best.design[k], result.design_errors, k,
-                                   case_data::shown_unit(input, variable)),
-                        (moves ? at_bound(variable, best.design[k]) : "") +
-                            free_text(result.design_errors, k));
+  for (const case_data::DesignRow& row : case_data::design_rows(input)) {
+    text += fmt::format("  {:<20} {}{}{}{}\n", row.label(),
+                        case_data::row_text(input, row, best.design),
+                        row_error(input, row, result.design_errors),
+                        moves ? at_bound(input, row, best.design) : "",
+                        free_text(row, result.design_errors));
   }
   const std::vector<std::string> names = case_data::response_names(input);
   const bool moved = result.start && result.start->design != best.design;

@@ -9,9 +9,11 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/json.h"
+#include "pipeline/case_data/design_vectors.h"
 #include "pipeline/reader/case_reader.h"
 #include "pipeline/store/find_runs.h"
 #include "pipeline/store/incumbent.h"
+#include "pipeline/store/named_values.h"
 #include "pipeline/store/refreeze.h"
 
 namespace meniscus::store {
@@ -115,16 +117,17 @@ VectorX told_design(const case_data::Case& input,
   VectorX design = case_data::initial_design(input);
   for (std::size_t k = 0; k < input.design.size(); ++k) {
     const std::string& name = input.design[k].name;
-    const auto told =
+    const auto all =
         result.is_object() ? result.find("parameters") : result.end();
-    if (told == result.end() || !told->is_object() || !told->contains(name) ||
-        !(*told)[name].is_number()) {
+    const nlohmann::ordered_json* told =
+        all == result.end() ? nullptr : find_named(*all, name);
+    if (told == nullptr || !told->is_number()) {
       throw InvalidInput(fmt::format(
           "{}: it is damaged: no number for '{}' among its parameters; remove "
           "it to have the best design of study.sqlite, or run the case again",
           file.string(), name));
     }
-    design[static_cast<Eigen::Index>(k)] = (*told)[name].get<double>();
+    design[static_cast<Eigen::Index>(k)] = told->get<double>();
   }
   return design;
 }
@@ -146,6 +149,18 @@ VectorX answer_of_run(const case_data::Case& input,
   return best_record(input, records).inputs;
 }
 
+namespace {
+
+/// Has the case that variable, or a vector of that name and shape?
+bool has_row(const case_data::Case& input, const case_data::DesignRow& row) {
+  const std::vector<case_data::DesignRow> rows = case_data::design_rows(input);
+  return std::any_of(rows.begin(), rows.end(), [&](const auto& other) {
+    return other.label() == row.label();
+  });
+}
+
+}  // namespace
+
 std::vector<std::string> answer_as_overrides(
     const std::filesystem::path& folder, const case_data::Case& input) {
   const StudyStore store = StudyStore::read(folder.string());
@@ -158,15 +173,16 @@ std::vector<std::string> answer_as_overrides(
                     input.units.length, input.units.force));
   }
   const VectorX answer = answer_of_run(run, store.all(), folder);
-  const std::vector<std::string> names = case_data::design_names(input);
+  const nlohmann::ordered_json told =
+      named_json(case_data::design_names(run), answer);
   std::vector<std::string> overrides;
-  for (std::size_t k = 0; k < run.design.size(); ++k) {
-    const std::string& name = run.design[k].name;
-    if (std::find(names.begin(), names.end(), name) != names.end()) {
+  for (const case_data::DesignRow& row : case_data::design_rows(run)) {
+    if (has_row(input, row)) {
       overrides.push_back(
-          fmt::format("{}={}", name, answer[static_cast<Eigen::Index>(k)]));
+          fmt::format("{}={}", row.name, json_text(told[row.name], -1)));
     }
   }
+  const std::vector<std::string> names = case_data::row_names(input);
   if (overrides.empty()) {
     throw InvalidInput(fmt::format(
         "the run in '{}' has no design variable of this case, which has {}",

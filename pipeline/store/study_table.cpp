@@ -86,6 +86,7 @@ std::string study_table_text(const std::vector<EvaluationRecord>& records,
   std::vector<Cells> rows =
       table(records, [](double value) { return fmt::format("{:.6g}", value); });
   files::show_units(units, rows);
+  files::join_elements(rows);
   std::string text = files::aligned_text(rows);
   for (const EvaluationRecord& record : records) {
     if (record.failure) {

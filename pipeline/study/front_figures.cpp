@@ -7,6 +7,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "pipeline/case_data/design_vectors.h"
+#include "pipeline/store/named_values.h"
+
 namespace meniscus::study {
 
 namespace {
@@ -56,18 +59,16 @@ nlohmann::ordered_json front_json(const case_data::Case& input,
                {"left_out", figures.left_out},
                {"points", Json::array()}};
   for (const FrontPoint& point : figures.points) {
-    Json entry = {{first, point.first},
-                  {second, point.second},
-                  {"end", point.end},
-                  {"parameters", Json::object()}};
+    Json entry = {
+        {first, point.first},
+        {second, point.second},
+        {"end", point.end},
+        {"parameters",
+         store::named_json(case_data::design_names(input), point.design)}};
     if (point.own_mesh) {
       entry["own_mesh"] = {{first, point.own_mesh->first},
                            {second, point.own_mesh->second},
                            {"kept", point.own_mesh->kept}};
-    }
-    for (std::size_t j = 0; j < input.design.size(); ++j) {
-      entry["parameters"][input.design[j].name] =
-          point.design[static_cast<Eigen::Index>(j)];
     }
     json["points"].push_back(std::move(entry));
   }

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "pipeline/case_data/design_vectors.h"
 #include "pipeline/case_data/response_entries.h"
 #include "pipeline/case_data/studied_responses.h"
 #include "pipeline/responses/responses.h"
@@ -230,6 +231,11 @@ std::vector<optimize::Variable> variables_of(const case_data::Case& input,
       variable.range = range;
     }
     variables.push_back(std::move(variable));
+  }
+  for (const case_data::DesignRow& row : case_data::design_rows(input)) {
+    for (std::size_t k = row.first; k < row.first + row.count; ++k) {
+      variables[k].group = row.vector == nullptr ? "" : row.name;
+    }
   }
   return variables;
 }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "pipeline/case_data/design_vectors.h"
 #include "pipeline/responses/scans.h"
 #include "pipeline/study/run_kind.h"
 #include "pipeline/study/scan_match.h"
@@ -20,18 +21,27 @@ bool is_least(optimize::Termination termination) {
          termination == optimize::Termination::AtBound;
 }
 
-/// "a = 40", of variables at a bound.
+/// "a = 40, 3 of t", of variables at a bound.
 std::string bounds_reached(const case_data::Case& input, const VectorX& best) {
   constexpr double kAt = 1e-9;  // x the range
   std::string text;
-  for (std::size_t k = 0; k < input.design.size(); ++k) {
-    const case_data::DesignVariable& v = input.design[k];
-    const double value = best[static_cast<Eigen::Index>(k)];
-    const double near = kAt * (v.upper - v.lower);
-    if (v.upper > v.lower &&
-        (value <= v.lower + near || value >= v.upper - near)) {
-      text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", v.name,
-                          case_data::shown_unit(input, v).text(value));
+  for (const case_data::DesignRow& row : case_data::design_rows(input)) {
+    int reached = 0;
+    for (std::size_t k = row.first; k < row.first + row.count; ++k) {
+      const case_data::DesignVariable& v = input.design[k];
+      const double value = best[static_cast<Eigen::Index>(k)];
+      const double near = kAt * (v.upper - v.lower);
+      reached += v.upper > v.lower &&
+                         (value <= v.lower + near || value >= v.upper - near)
+                     ? 1
+                     : 0;
+    }
+    if (reached > 0) {
+      text += text.empty() ? "" : ", ";
+      text += row.vector == nullptr
+                  ? fmt::format("{} = {}", row.name,
+                                case_data::row_text(input, row, best))
+                  : fmt::format("{} of {}", reached, row.name);
     }
   }
   return text;

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/json.h"
+#include "pipeline/case_data/design_vectors.h"
 #include "pipeline/case_data/studied_responses.h"
 #include "pipeline/forward/figures_json.h"
 
@@ -70,14 +71,13 @@ std::string describe(const case_data::Case& input,
                      const store::EvaluationRecord& record) {
   std::string text = fmt::format("evaluation {} ({}):", record.number,
                                  store::purpose_of(record));
-  if (record.inputs.size() <= kMostNamed) {
-    for (Eigen::Index k = 0; k < record.inputs.size(); ++k) {
-      const auto i = static_cast<std::size_t>(k);
-      text += fmt::format(
-          " {} = {}", record.input_names[i],
-          case_data::shown_unit(input, input.design[i]).text(record.inputs[k]));
+  const std::vector<case_data::DesignRow> rows = case_data::design_rows(input);
+  if (std::ssize(rows) <= kMostNamed) {
+    for (const case_data::DesignRow& row : rows) {
+      text += fmt::format(" {} = {}", row.name,
+                          case_data::row_text(input, row, record.inputs));
     }
-    text += record.inputs.size() > 0 ? ";" : "";
+    text += rows.empty() ? "" : ";";
   }
   if (record.failure) {
     return text + " cannot evaluate here: " + record.failure->message;

@@ -5,7 +5,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "pipeline/case_data/design_vectors.h"
 #include "pipeline/responses/responses.h"
+#include "pipeline/store/named_values.h"
 
 namespace meniscus::study {
 
@@ -24,14 +26,6 @@ void widen(ResponseRange& range, double value, const VectorX& design,
     range.largest_at = design;
   }
   range.mean += value;
-}
-
-Json place_json(const case_data::Case& input, const VectorX& design) {
-  Json json = Json::object();
-  for (std::size_t k = 0; k < input.design.size(); ++k) {
-    json[input.design[k].name] = design[static_cast<Eigen::Index>(k)];
-  }
-  return json;
 }
 
 }  // namespace
@@ -74,13 +68,14 @@ nlohmann::ordered_json sweep_json(const case_data::Case& input,
     json["failures"][kind] = count;
   }
   json["responses"] = Json::object();
+  const std::vector<std::string> names = case_data::design_names(input);
   for (std::size_t k = 0; k < figures.responses.size(); ++k) {
     const ResponseRange& range = figures.responses[k];
     json["responses"][input.responses[k].name] = {
         {"least", range.least},
-        {"least_at", place_json(input, range.least_at)},
+        {"least_at", store::named_json(names, range.least_at)},
         {"largest", range.largest},
-        {"largest_at", place_json(input, range.largest_at)},
+        {"largest_at", store::named_json(names, range.largest_at)},
         {"mean", range.mean}};
   }
   return json;

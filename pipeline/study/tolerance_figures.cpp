@@ -6,7 +6,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "pipeline/case_data/design_vectors.h"
 #include "pipeline/responses/responses.h"
+#include "pipeline/store/named_values.h"
 
 namespace meniscus::study {
 
@@ -69,18 +71,17 @@ nlohmann::ordered_json tolerance_json(const case_data::Case& input,
                {"samples", figures.samples},
                {"failed", figures.failed},
                {"responses", Json::object()}};
-  for (std::size_t j = 0; j < input.design.size(); ++j) {
-    json["deviations"][input.design[j].name] = input.study.deviations[j];
-  }
+  const std::vector<std::string> names = case_data::design_names(input);
+  json["deviations"] = store::named_json(
+      names, Eigen::Map<const VectorX>(input.study.deviations.data(),
+                                       std::ssize(input.study.deviations)));
   for (std::size_t k = 0; k < input.responses.size(); ++k) {
     Json entry = Json::object();
     const Eigen::Index row = row_of(figures, static_cast<int>(k));
     if (row >= 0) {
       entry["deviation"] = figures.linear.deviation[row];
-      for (std::size_t j = 0; j < input.design.size(); ++j) {
-        entry["shares"][input.design[j].name] =
-            figures.linear.shares(row, static_cast<Eigen::Index>(j));
-      }
+      entry["shares"] =
+          store::named_json(names, figures.linear.shares.row(row).transpose());
     }
     if (figures.sampled) {
       entry["sampled"] =
@@ -102,10 +103,13 @@ std::string tolerance_text(const case_data::Case& input,
     if (row >= 0) {
       text += fmt::format(" {:.4g} by gradient (",
                           factor * figures.linear.deviation[row]);
-      for (std::size_t j = 0; j < input.design.size(); ++j) {
-        text += fmt::format(
-            "{}{} {:.0f} %", j == 0 ? "" : ", ", input.design[j].name,
-            100.0 * figures.linear.shares(row, static_cast<Eigen::Index>(j)));
+      for (const case_data::DesignRow& of : case_data::design_rows(input)) {
+        const double share = figures.linear.shares.row(row)
+                                 .segment(static_cast<Eigen::Index>(of.first),
+                                          static_cast<Eigen::Index>(of.count))
+                                 .sum();
+        text += fmt::format("{}{} {:.0f} %", of.first == 0 ? "" : ", ", of.name,
+                            100.0 * share);
       }
       text += ")";
     }

@@ -56,10 +56,14 @@ class Run:
         return self._message
 
     @property
-    def parameters(self) -> "dict[str, float]":
+    def parameters(self) -> "dict[str, Any]":
         """Design variables at the answer and parameters, by name, in the
-        case's units."""
-        return dict(self._result.get("parameters") or {})
+        case's units: floats, of a vector of design variables an array of its
+        shape."""
+        found = self._result.get("parameters") or {}
+        return {name: numpy.array(value, dtype=float)
+                if isinstance(value, list) else value
+                for name, value in found.items()}
 
     @property
     def responses(self) -> "dict[str, float]":

@@ -119,6 +119,11 @@ Json page_case(const case_data::Case& input) {
          {"lower", number(d.lower)},
          {"upper", number(d.upper)}});
   }
+  json["vectors"] = Json::array();
+  for (const case_data::DesignVector& v : input.vectors) {
+    json["vectors"].push_back(
+        {{"name", v.name}, {"shape", v.shape}, {"first", v.first}});
+  }
   for (std::size_t k = 0; k < input.responses.size(); ++k) {
     const case_data::ResponseEntry& response = input.responses[k];
     json["responses"].push_back(

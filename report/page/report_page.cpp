@@ -11,6 +11,7 @@
 #include "core/json.h"
 #include "pipeline/case_data/case_symmetry.h"
 #include "pipeline/forward/worst_cases.h"
+#include "pipeline/store/named_values.h"
 #include "pipeline/store/stored_case.h"
 #include "report/page/page_case.h"
 #include "report/page/page_evolved.h"
@@ -116,10 +117,12 @@ std::optional<StoredRun> stored_run(const fs::path& folder, const Json& result,
                 .design = {},
                 .materials = {}};
   run.design = case_data::initial_design(run.input);
-  for (std::size_t k = 0; k < run.input.design.size(); ++k) {
-    const Json::json_pointer at("/parameters/" + run.input.design[k].name);
-    if (result.contains(at) && result[at].is_number()) {
-      run.design[static_cast<Eigen::Index>(k)] = result[at].get<double>();
+  for (std::size_t k = 0;
+       result.contains("parameters") && k < run.input.design.size(); ++k) {
+    const Json* value =
+        store::find_named(result["parameters"], run.input.design[k].name);
+    if (value != nullptr && value->is_number()) {
+      run.design[static_cast<Eigen::Index>(k)] = value->get<double>();
     }
   }
   run.materials = case_data::evaluate(run.input, run.design).materials;

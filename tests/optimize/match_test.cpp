@@ -192,6 +192,32 @@ INSTANTIATE_TEST_SUITE_P(Methods, EveryMethod,
                          testing::Values("ceres", "bobyqa", "cobyla", "sbplx",
                                          "neldermead", "direct_l"));
 
+TEST(Match, MessagesNameAGroupOfVariablesOnce) {
+  // x_k wants to be at 1.2 k, from 0 to 7.2, and may be from 1 to 3.
+  Recorder recorder{[](const VectorX& x) -> VectorX {
+                      return x - VectorX::LinSpaced(7, 0.0, 7.2);
+                    },
+                    {}};
+  std::vector<optimize::Variable> variables;
+  for (int k = 0; k < 7; ++k) {
+    variables.push_back({.name = "t[" + std::to_string(k + 1) + "]",
+                         .initial = 2.0,
+                         .lower = 1.0,
+                         .upper = 3.0,
+                         .group = k < 6 ? "t" : ""});
+  }
+  variables[6].name = "alone";
+  const optimize::MatchReport report =
+      optimize::match(variables, recorder.function(), {});
+  EXPECT_EQ(report.termination, optimize::Termination::AtBound);
+  EXPECT_THAT(
+      report.message,
+      testing::AllOf(HasSubstr("t = 1 to 3, alone = 3"),
+                     HasSubstr("1 of 6 elements of t at a lower bound, 3 of 6 "
+                               "elements of t at an upper bound, alone at its "
+                               "upper bound 3")));
+}
+
 TEST(Match, MoreVariablesThanTargetsIsSolved) {
   Recorder recorder{
       [](const VectorX& x) { return one(x[0] + 2.0 * x[1] - 1.0); }, {}};

@@ -10,7 +10,7 @@ import unittest
 import numpy as np
 
 import meniscus
-from support import CASE, STRUTS, PackageTest, bracket
+from support import CASE, PETALS, STRUTS, PackageTest, bracket
 
 
 class Reading(PackageTest):
@@ -28,6 +28,43 @@ class Reading(PackageTest):
         self.assertEqual(case.parameters()["load_left"], 40e3)
         self.assertEqual(case.load_cases, ["service"])
         self.assertEqual(len(meniscus.read_case(STRUTS).members), 12)
+
+    def test_vectors_are_arrays_by_name(self):
+        case = meniscus.read_case(PETALS)
+        self.assertEqual([d.name for d in case.design][:4],
+                         ["t[1,1]", "t[1,2]", "t[1,3]", "t[2,1]"])
+        start = case.by_name()
+        self.assertEqual(list(start), ["t"])
+        np.testing.assert_array_equal(start["t"], np.full((2, 3), 25.0))
+        start["t"][0, 0] = -1.0  # a new array each time
+        self.assertEqual(case.by_name()["t"][0, 0], 25.0)
+        numbers = np.arange(6.0)
+        np.testing.assert_array_equal(case.by_name(numbers)["t"],
+                                      numbers.reshape(2, 3))
+        one = case.by_name({"t[2, 1]": 30.0})["t"]
+        self.assertEqual((one[1, 0], one.sum()), (30.0, 155.0))
+        np.testing.assert_array_equal(case.by_name({"t": 26})["t"],
+                                      np.full((2, 3), 26.0))
+        np.testing.assert_array_equal(
+            case.by_name({"t": numbers.reshape(2, 3)})["t"].ravel(), numbers)
+        for wrong, told in (
+                ({"t": numbers}, "array of shape \\(6,\\), expected \\(2, 3\\)"),
+                ({"t": numbers.reshape(3, 2)}, "expected \\(2, 3\\) or one"),
+                ({"t[1,1]": [1.0]}, "expected one number"),
+                ({"t": "much"}, "expected numbers"),
+                ({"t[3,1]": 1.0}, "no design variable 't\\[3,1\\]'"),
+                ({"u": 1.0}, "no design variable 'u'.*there are: t"),
+                (numbers[:5], "expected \\(6,\\): t")):
+            with self.assertRaisesRegex(meniscus.InvalidInput, told):
+                case.by_name(wrong)
+        own = meniscus.with_overrides(case, {
+            "t": np.linspace(21.0, 26.0, 6).reshape(2, 3), "t[1,2]": 30})
+        np.testing.assert_array_equal(own.by_name()["t"],
+                                      [[21, 30, 23], [24, 25, 26]])
+        tree = tomllib.loads(PETALS.read_text())
+        tree["design"]["t"]["initial"] = np.full((2, 3), 27.0)
+        self.assertEqual(meniscus.make_case(tree).by_name()["t"].sum(), 162.0)
+        self.assertEqual(bracket().by_name(), {"support_x": 0.0})
 
     def test_overrides(self):
         case = meniscus.read_case(CASE, {

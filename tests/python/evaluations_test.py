@@ -7,7 +7,7 @@ import unittest
 import numpy as np
 
 import meniscus
-from support import CASE, COARSE, PackageTest, bracket, model
+from support import CASE, COARSE, PETALS, PackageTest, bracket, model
 
 # Central differences over 2 x 0.01 mm: second order in the step, and the
 # noise of a solve to 1e-10.
@@ -73,6 +73,23 @@ class Stages(PackageTest):
 
 
 class Failures(PackageTest):
+    def test_a_vector_goes_in_as_an_array(self):
+        case = meniscus.read_case(PETALS, {"resolution.fea": 12.0,
+                                             "resolution.film": 6.0})
+        petals = meniscus.Model(case)
+        t = 25.0 + np.arange(6.0).reshape(2, 3) / 10
+        evaluation = petals.evaluate({"t": t})
+        np.testing.assert_array_equal(evaluation.design, t.ravel())
+        np.testing.assert_array_equal(
+            evaluation.responses, petals.evaluate(t.ravel()).responses)
+        slope = case.by_name(evaluation.gradient("mass"))["t"]
+        self.assertEqual(slope.shape, (2, 3))
+        step = np.zeros((2, 3))
+        step[1, 0] = 1e-3
+        difference = (petals.evaluate({"t": t + step})["mass"]
+                      - petals.evaluate({"t": t - step})["mass"]) / 2e-3
+        self.assertAlmostEqual(slope[1, 0] / difference, 1.0, 5)
+
     def test_a_failed_design_is_data(self):
         far = model().evaluate([-500.0])
         self.assertFalse(far.ok)

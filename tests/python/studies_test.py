@@ -8,7 +8,7 @@ import unittest
 import numpy as np
 
 import meniscus
-from support import CASE, COARSE, PackageTest, bracket, strut_tree
+from support import CASE, COARSE, PETALS, PackageTest, bracket, strut_tree
 
 SET = [part for name, value in COARSE.items()
        for part in ("--set", f"{name}={value}")]
@@ -87,6 +87,16 @@ class Studies(PackageTest):
                 timer.join()
                 self.assertEqual(meniscus.read_run(folder).status,
                                  "interrupted")
+
+    def test_the_answer_of_a_vector_is_an_array(self):
+        case = meniscus.read_case(PETALS, {"study.kind": "analyse"})
+        run = meniscus.run_study(case, self.folder() / "petals", pictures=False)
+        np.testing.assert_array_equal(run.parameters["t"],
+                                      np.full((2, 3), 25.0))
+        self.assertEqual(run.result["parameters"]["t"], [[25.0] * 3] * 2)
+        np.testing.assert_array_equal(
+            run.case.by_name(run.answer)["t"], run.parameters["t"])
+        self.assertEqual(run.evaluations.designs.shape, (1, 6))
 
     def test_a_failed_initial_design_is_a_result(self):
         case = meniscus.with_overrides(bracket(),

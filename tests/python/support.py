@@ -15,6 +15,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = pathlib.Path(sys.argv.pop(1)) if len(sys.argv) > 1 else None
 CASE = ROOT / "cases" / "two_arm" / "case.toml"
 STRUTS = ROOT / "tests" / "support" / "struts.toml"
+PETALS = ROOT / "tests" / "support" / "petals.toml"
 # About a thousand elements, a tenth of a second each.
 COARSE = {"resolution.fea": 24.0, "resolution.film": 12.0}
 

@@ -118,6 +118,22 @@ constraints = [{ response = "sway", max = 1e-6 }]
 `,
 );
 
+// Twelve points of a foot, design variables under one name.
+const PETALS = STRUTS.replace(
+  /kind = "circle"\ncenter = \[0, 0, 0\][^]*?radius = 25/,
+  `kind = "spline"
+points = [{ at = ["t[i, j] * cos((6 * i + j) * pi / 6)", "t[i, j] * sin((6 * i + j) * pi / 6)", 0], repeat = [2, 6] }]`,
+)
+  .replace("[curves.base]", '[design.t]\nshape = [2, 6]\ninitial = "25 mm"\nbounds = [24, 27]\n[curves.base]')
+  .replace(
+    /\[study\][^]*/,
+    `[study]
+kind = "minimize"
+objective = "sway"
+constraints = [{ response = "mass", max = "1 kg" }]
+`,
+  );
+
 function run(code, ...args) {
   const done = spawnSync(program, args, { cwd: output, encoding: "utf-8" });
   assert.equal(done.status, code, `${args.join(" ")}:\n${done.stdout}${done.stderr}`);
@@ -139,6 +155,12 @@ function makeRuns() {
   }
   fs.writeFileSync(path.join(output, "struts.toml"), STRUTS);
   run(0, "run", "struts.toml", "--no-pictures", "--out", "struts");
+  fs.writeFileSync(path.join(output, "petals.toml"), PETALS);
+  const petals = (name, code, ...set) =>
+    run(code, "run", "petals.toml", "--no-pictures", "--out", name, ...set.flatMap((text) => ["--set", text]));
+  petals("petals", 0);
+  petals("petal_sweep", 0, "study.kind=sweep", "study.count=4");
+  petals("petal_scatter", 0, "study.kind=tolerance", 'study.deviations={ t = "0.1 mm" }', "study.count=2");
   run(0, "compare", "arms", "even", "--out", "compared");
   // As many members as fit a page, each of its own height.
   const members = Array.from({ length: 28 }, (_, k) => `[study.members.m${k + 1}]\nheight = ${40 + k}\n`).join("");
@@ -442,6 +464,37 @@ async function testOthers(browser) {
 }
 
 /** Names of 28 members stand over their own parts, none over another. */
+/** A vector of design variables is one row, one bar, one column. */
+async function testVectors(browser) {
+  for (const name of ["petals", "petal_sweep", "petal_scatter"]) {
+    const visit = await Visit.to(browser, name);
+    const { page } = visit;
+    await visit.shot(name);
+    const text = await page.evaluate(() => {
+      const main = document.querySelector("main").cloneNode(true);
+      main.querySelectorAll(".code, .warnings").forEach((part) => part.remove());
+      return main.textContent;
+    });
+    assert.match(text, /t \[2 \u00d7 6\]/);
+    assert.doesNotMatch(text, /t\[\d/);
+    const rows = await page.evaluate(() =>
+      [...document.querySelectorAll("#answer table:first-of-type tbody tr")].map((r) => r.innerText),
+    );
+    assert.equal(rows.filter((r) => r.startsWith("t [2")).length, 1, rows.join("\n"));
+    if (name === "petals") {
+      assert.match(rows[0], /to .* mean .*mm/);
+      assert.match(rows[0], /25\s?mm each|25\.\d* mm each/);
+      assert.match(text, /t \[2 \u00d7 6\], lowest/);
+      assert.match(text, /per mm of all of t \[2 \u00d7 6\]/);
+      await visit.changes("pushes", () => visit.set("push", "0"));
+    }
+    if (name === "petal_sweep") {
+      assert.match(text, /over the mean of t \[2 \u00d7 6\], 6 designs/);
+    }
+    await visit.leave();
+  }
+}
+
 async function testMany(browser) {
   const many = await Visit.to(browser, "many");
   const cells = await many.page.evaluate(() => {
@@ -502,6 +555,7 @@ const browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? 
 try {
   await testRun(browser);
   await testOthers(browser);
+  await testVectors(browser);
   await testMany(browser);
 } finally {
   await browser.close();

@@ -105,6 +105,22 @@ inline std::string leaning_strut() {
                  "center = [\"lean\", 0, \"length + lean / 4\"]");
 }
 
+/// Whose foot is a spline through six points, a vector's element from the axis
+/// each: the corner case of many design variables under one name. Line 8 is
+/// [design.t].
+inline std::string petal_strut() {
+  const std::string text = changed(
+      strut(), "[design.foot]\ninitial = 25.0\nbounds = [20.0, 32.0]\n",
+      "[design.t]\nshape = [2, 3]\ninitial = 25.0\nbounds = [20.0, 32.0]\n");
+  return changed(text,
+                 "kind = \"circle\"\ncenter = [0, 0, 0]\n"
+                 "normal = [0, 0, -1]\nradius = \"foot\"\n",
+                 "kind = \"spline\"\npoints = [{ at = [\n"
+                 "  \"t[i, j] * cos((j + 3 * i) * pi / 3)\",\n"
+                 "  \"t[i, j] * sin((j + 3 * i) * pi / 3)\", 0], "
+                 "repeat = [2, 3] }]\n");
+}
+
 /// The case of a text without problems.
 inline case_data::Case case_of(const std::string& text) {
   reader::CaseReading reading = reader::read_case_text(text, "case.toml");

@@ -5,6 +5,7 @@ import { h, section } from "./dom";
 import { number, words } from "./format";
 import { historyOf, type HistoryRow } from "./history";
 import { responsesOf } from "./measures";
+import { designRows, finite, mean } from "./rows";
 
 /** Whole numbers only, at most a dozen. */
 function axisX(rows: HistoryRow[]): Plot.ScaleOptions {
@@ -166,13 +167,24 @@ function responseCharts(data: PageData, rows: HistoryRow[]): HTMLElement[] {
 }
 
 function designChart(data: PageData, rows: HistoryRow[]): HTMLElement | null {
-  const found = (data.case?.design ?? []).flatMap((d) => {
-    const low = d.lower ?? 0;
-    const range = (d.upper ?? 1) - low;
-    return points(rows, words(d.name), (r) => {
-      const v = r.values[d.name];
-      return v === null || v === undefined || range <= 0 ? null : (100 * (v - low)) / range;
-    });
+  const found = designRows(data).flatMap((d) => {
+    const places = (r: HistoryRow) =>
+      finite(
+        d.values(r.values).map((v, k) => {
+          const low = d.elements[k]?.lower ?? 0;
+          const range = (d.elements[k]?.upper ?? 1) - low;
+          return v === null || range <= 0 ? null : (100 * (v - low)) / range;
+        }),
+      );
+    const series = (label: string, pick: (found: number[]) => number) =>
+      points(rows, label, (r) => (places(r).length > 0 ? pick(places(r)) : null));
+    return d.isVector
+      ? [
+          ...series(`${d.label}, lowest`, (p) => Math.min(...p)),
+          ...series(`${d.label}, mean`, mean),
+          ...series(`${d.label}, highest`, (p) => Math.max(...p)),
+        ]
+      : series(d.label, (p) => p[0]);
   });
   return found.length < 2
     ? null

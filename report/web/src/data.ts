@@ -122,6 +122,8 @@ export interface CaseData {
   overrides: string[];
   hash: string;
   design: DesignVariable[];
+  /** Those that people know by one name, from place `first` on; of older pages none. */
+  vectors?: { name: string; shape: number[]; first: number }[];
   responses: ResponseData[];
   parameter_units: Record<string, string>;
   study: {
@@ -145,6 +147,11 @@ export interface Units {
 }
 
 export type Numbers = Record<string, number | null>;
+
+/** One number, or those of a vector of design variables in arrays of its shape. */
+export type Nested = number | null | Nested[];
+/** Design variables and parameters by name. */
+export type Inputs = Record<string, Nested>;
 
 export interface Distribution {
   mean: number;
@@ -190,8 +197,8 @@ export interface MemberResult {
   parent: string;
   status: string;
   message: string;
-  parameters: Numbers;
-  design: Numbers;
+  parameters: Inputs;
+  design: Inputs;
   objective: number | null;
   constraints: Constraints;
   responses: Numbers;
@@ -212,13 +219,13 @@ export interface Result {
   units?: Units;
   status: string;
   message: string;
-  parameters?: Numbers;
-  parameter_errors?: Numbers;
+  parameters?: Inputs;
+  parameter_errors?: Inputs;
   objective?: number | null;
   constraints?: Constraints;
   responses?: Numbers;
   response_errors?: Numbers;
-  start?: { parameters: Numbers; responses: Numbers };
+  start?: { parameters: Inputs; responses: Numbers };
   evaluations?: number;
   failed_evaluations?: number;
   gradient_evaluations?: number;
@@ -281,20 +288,20 @@ export interface Result {
         least: number | null;
         largest: number | null;
         mean: number | null;
-        least_at?: Numbers | null;
-        largest_at?: Numbers | null;
+        least_at?: Inputs | null;
+        largest_at?: Inputs | null;
       }
     >;
   };
   tolerance?: {
-    deviations: Numbers;
+    deviations: Inputs;
     samples: number;
     failed: number;
     responses: Record<
       string,
       {
         deviation?: number | null;
-        shares?: Numbers | null;
+        shares?: Inputs | null;
         sampled?: {
           mean: number | null;
           deviation: number | null;
@@ -308,7 +315,7 @@ export interface Result {
   };
   front?: {
     objectives: string[];
-    points: (Record<string, unknown> & { parameters: Numbers; end: string })[];
+    points: (Record<string, unknown> & { parameters: Inputs; end: string })[];
   };
   members?: MemberResult[];
   ledger?: unknown;

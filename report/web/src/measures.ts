@@ -46,6 +46,10 @@ export function responsesOf(data: PageData): Measures {
 /** Design variables and parameters. */
 export function inputsOf(data: PageData): Measures {
   return new Measures(
-    (name) => data.case?.design.find((d) => d.name === name)?.unit ?? data.case?.parameter_units?.[name],
+    (name) => {
+      const at = data.case?.vectors?.find((v) => v.name === name)?.first;
+      const variable = at === undefined ? data.case?.design.find((d) => d.name === name) : data.case?.design[at];
+      return variable?.unit ?? data.case?.parameter_units?.[name];
+    },
   );
 }

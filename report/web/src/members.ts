@@ -2,6 +2,7 @@ import type { MemberResult, PageData } from "./data";
 import { h, section, table } from "./dom";
 import { number, quantity, seconds, shownUnit, words } from "./format";
 import { inputsOf, responsesOf } from "./measures";
+import { rangeText } from "./rows";
 
 /** A family's members in one table. */
 export function familySection(data: PageData): HTMLElement | null {
@@ -37,8 +38,8 @@ export function familySection(data: PageData): HTMLElement | null {
         return [
           link ? h("a", { href: link }, m.name) : m.name,
           sized ? "\u2713 done" : h("strong", { class: "bad", title: m.message }, `\u2717 ${m.status}`),
-          ...parameters.map((n) => number(inputs.shown(n, m.parameters?.[n]))),
-          ...design.map((n) => number(inputs.shown(n, m.design?.[n]))),
+          ...parameters.map((n) => rangeText(m.parameters?.[n], inputs.factor(n))),
+          ...design.map((n) => rangeText(m.design?.[n], inputs.factor(n))),
           ...responses.map((n) => number(outputs.shown(n, m.responses?.[n]))),
           String(m.evaluations ?? 0),
           seconds(m.seconds),

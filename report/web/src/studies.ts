@@ -5,6 +5,7 @@ import { h, section, table } from "./dom";
 import { number, words } from "./format";
 import { historyOf } from "./history";
 import { inputsOf, responsesOf } from "./measures";
+import { designRows, finite, flat, mean, rangeText } from "./rows";
 
 /** A sweep: every response over every design variable. */
 export function sweepSection(data: PageData): HTMLElement | null {
@@ -17,14 +18,15 @@ export function sweepSection(data: PageData): HTMLElement | null {
   const rows = historyOf(data).filter((r) => r.status === "ok");
   const charts: HTMLElement[] = [];
   for (const response of Object.keys(sweep.responses)) {
-    for (const design of data.case?.design ?? []) {
+    for (const design of designRows(data)) {
       const found = rows.flatMap((r) => {
-        const x = inputs.shown(design.name, r.values[design.name]);
+        const values = finite(design.shown(r.values));
+        const x = values.length > 0 ? mean(values) : null;
         const y = responses.shown(response, r.values[response]);
         return typeof x === "number" && typeof y === "number" ? [{ x, y }] : [];
       });
       charts.push(
-        chart(`${responses.label(response)} over ${words(design.name)}, ${found.length} designs.`, {
+        chart(`${responses.label(response)} over ${design.isVector ? "the mean of " : ""}${design.label}, ${found.length} designs.`, {
           x: { label: `${inputs.label(design.name)} \u2192`, tickFormat: tick },
           y: { label: `\u2191 ${responses.label(response)}`, tickFormat: tick },
           marks: [Plot.dot(found, { x: "x", y: "y", stroke: "#0072b2", r: 3.2 })],
@@ -64,7 +66,7 @@ export function frontSection(data: PageData): HTMLElement | null {
     return typeof x === "number" && typeof y === "number" ? [{ x, y, parameters: p.parameters }] : [];
   });
   const [a, b] = [first, second].map((name) => responses.label(name));
-  const names = (data.case?.design ?? []).map((d) => d.name);
+  const names = designRows(data).map((d) => d.name);
   const numeric = true;
   return section(
     "front",
@@ -82,7 +84,7 @@ export function frontSection(data: PageData): HTMLElement | null {
     table(
       "Points of the front",
       [{ head: a, numeric }, { head: b, numeric }, ...names.map((n) => ({ head: inputs.label(n), numeric }))],
-      found.map((p) => [number(p.x), number(p.y), ...names.map((n) => number(inputs.shown(n, p.parameters[n])))]),
+      found.map((p) => [number(p.x), number(p.y), ...names.map((n) => rangeText(p.parameters[n], inputs.factor(n)))]),
     ),
   );
 }
@@ -94,11 +96,12 @@ export function toleranceSection(data: PageData): HTMLElement | null {
     return null;
   }
   const responses = responsesOf(data);
+  const inputs = inputsOf(data);
   const shares = Object.entries(tolerance.responses).flatMap(([response, r]) =>
     Object.entries(r.shares ?? {}).map(([variable, share]) => ({
       response: words(response),
       variable: words(variable),
-      share: 100 * (share ?? 0),
+      share: 100 * finite(flat(share)).reduce((sum, s) => sum + s, 0), // of a vector all of it
     })),
   );
   const numeric = true;
@@ -108,7 +111,13 @@ export function toleranceSection(data: PageData): HTMLElement | null {
     table(
       "Standard deviations of the design variables",
       [{ head: "design variable" }, { head: "deviation", numeric }],
-      Object.entries(tolerance.deviations).map(([name, d]) => [words(name), inputsOf(data).text(name, d)]),
+      Object.entries(tolerance.deviations).map(([name, d]) => {
+        const all = finite(flat(d));
+        return [
+          words(name),
+          all.length > 1 ? inputs.range(name, Math.min(...all), Math.max(...all)) : inputs.text(name, flat(d)[0]),
+        ];
+      }),
     ),
     table(
       "Standard deviations of the responses",
@@ -141,7 +150,7 @@ export function toleranceSection(data: PageData): HTMLElement | null {
 /** What a step of each design variable does to each response. */
 export function sensitivitySection(data: PageData): HTMLElement | null {
   const gradients = data.gradients;
-  const design = data.case?.design ?? [];
+  const design = designRows(data);
   if (!gradients || design.length === 0) {
     return null;
   }
@@ -153,17 +162,23 @@ export function sensitivitySection(data: PageData): HTMLElement | null {
       return;
     }
     const value = data.result?.responses?.[response.name];
-    design.forEach((variable, k) => {
-      const g = line[k];
-      const range = (variable.upper ?? 1) - (variable.lower ?? 0);
-      if (g !== null && g !== undefined && value) {
-        bars.push({ response: words(response.name), variable: words(variable.name), change: (g * range) / Math.abs(value) });
+    // All elements of a vector move together.
+    const slopes = design.map((d) => line.slice(d.first, d.first + d.elements.length));
+    design.forEach((d, k) => {
+      const all = finite(slopes[k]);
+      if (all.length === d.elements.length && value) {
+        const change = d.elements.reduce((sum, e, i) => sum + all[i] * ((e.upper ?? 1) - (e.lower ?? 0)), 0);
+        bars.push({ response: words(response.name), variable: d.label, change: change / Math.abs(value) });
       }
     });
     rows.push([
       words(response.name),
       // Per unit as it is shown.
-      ...line.map((g, k) => responsesOf(data).text(response.name, g === null ? null : g / inputsOf(data).factor(design[k].name))),
+      ...design.map((d, k) => {
+        const all = finite(slopes[k]);
+        const slope = all.reduce((sum, g) => sum + g, 0) / inputsOf(data).factor(d.name);
+        return responsesOf(data).text(response.name, all.length === d.elements.length ? slope : null);
+      }),
     ]);
   });
   if (rows.length === 0) {
@@ -197,7 +212,10 @@ export function sensitivitySection(data: PageData): HTMLElement | null {
     ),
     table(
       "Change of each response per unit of each design variable",
-      [{ head: "response" }, ...design.map((d) => ({ head: `per ${inputsOf(data).unit(d.name) || "unit"} of ${words(d.name)}`, numeric: true }))],
+      [{ head: "response" }, ...design.map((d) => ({
+          head: `per ${inputsOf(data).unit(d.name) || "unit"} of ${d.isVector ? "all of " : ""}${d.label}`,
+          numeric: true,
+        }))],
       rows,
     ),
   );

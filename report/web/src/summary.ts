@@ -2,6 +2,7 @@ import type { PageData, Result, StressFigures } from "./data";
 import { h, section, table } from "./dom";
 import { count, direction, number, percent, quantity, seconds, words } from "./format";
 import { inputsOf, responsesOf } from "./measures";
+import { type DesignRow, designRows, finite, flat } from "./rows";
 
 const STATUS: Record<string, string> = {
   converged: "done",
@@ -128,7 +129,7 @@ export function answerSection(data: PageData): HTMLElement | null {
     return null;
   }
   const numeric = true;
-  const designs = data.case?.design ?? [];
+  const designs = designRows(data);
   const names = designs.map((d) => d.name);
   const parameters = result.parameters ?? {};
   const atBound = (value: number | null | undefined, d: { lower: number | null; upper: number | null }) => {
@@ -137,27 +138,39 @@ export function answerSection(data: PageData): HTMLElement | null {
       return "";
     }
     const near = Number.isFinite(high - low) ? 1e-6 * (high - low) : 0;
-    return value <= low + near ? " (at its lower bound)" : value >= high - near ? " (at its upper bound)" : "";
+    return value <= low + near ? "lower" : value >= high - near ? "upper" : "";
   };
+  const boundsText = (d: DesignRow) =>
+    ["lower", "upper"]
+      .map((side) => [side, d.values(parameters).filter((value, k) => atBound(value, d.elements[k]) === side).length] as const)
+      .filter(([, count]) => count > 0)
+      .map(([side, count]) => (d.isVector ? ` (${count} at their ${side} bound)` : ` (at its ${side} bound)`))
+      .join("");
   const inputs = inputsOf(data);
   const outputs = responsesOf(data);
-  const designRows = designs.map((d) => [
-    words(d.name),
-    inputs.text(d.name, parameters[d.name]) + atBound(parameters[d.name], d),
-    inputs.error(d.name, result.parameter_errors?.[d.name]),
-    inputs.text(d.name, result.start?.parameters[d.name] ?? d.initial),
-    inputs.range(d.name, d.lower, d.upper),
-  ]);
+  const rows = designs.map((d) => {
+    const errors = finite(d.values(result.parameter_errors));
+    const lower = finite(d.elements.map((e) => e.lower));
+    const upper = finite(d.elements.map((e) => e.upper));
+    const initial = Object.fromEntries(d.elements.map((e) => [e.name, e.initial]));
+    return [
+      d.label,
+      d.text(parameters) + boundsText(d),
+      inputs.error(d.name, errors.length > 0 ? Math.max(...errors) : null),
+      d.text(result.start?.parameters ?? initial),
+      inputs.range(d.name, lower.length > 0 ? Math.min(...lower) : null, upper.length > 0 ? Math.max(...upper) : null),
+    ];
+  });
   const others = Object.entries(parameters).filter(([name]) => !names.includes(name));
   const responses = Object.entries(result.responses ?? {});
   return section(
     "answer",
     responses.length > 0 ? "The answer" : "The design",
-    designRows.length > 0
+    rows.length > 0
       ? table(
           "Design variables",
           [{ head: "design variable" }, { head: responses.length > 0 ? "answer" : "value", numeric }, { head: "mesh error", numeric }, { head: "at the start", numeric }, { head: "bounds", numeric }],
-          designRows,
+          rows,
         )
       : null,
     responses.length > 0
@@ -177,7 +190,7 @@ export function answerSection(data: PageData): HTMLElement | null {
       ? table(
           "Parameters of the case",
           [{ head: "parameter" }, { head: "value", numeric }],
-          others.map(([name, value]) => [words(name), inputs.text(name, value)]),
+          others.map(([name, value]) => [words(name), inputs.text(name, flat(value)[0])]),
         )
       : null,
   );

@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/math/bound_text.h"
 #include "tests/support/not_here.h"
 
 namespace meniscus::expression_test {
@@ -100,6 +101,86 @@ TEST(Expression, NamesWhatIsWrongAndWhere) {
   EXPECT_THAT(error_of("nan"), HasSubstr("unknown name 'nan'"));
 }
 
+/// w, the elements of t [2 x 3] and of u [4], n; the value of an element has
+/// its indices as digits.
+const std::vector<std::string> kVectors = {
+    "w",      "t[1,1]", "t[1,2]", "t[1,3]", "t[2,1]", "t[2,2]",
+    "t[2,3]", "u[1]",   "u[2]",   "u[3]",   "u[4]",   "n"};
+const std::vector<double> kElements = {0.5, 11, 12, 13, 21, 22,
+                                       23,  1,  2,  3,  4,  2};
+
+double element(const std::string& text) {
+  std::vector<std::optional<double>> constants(kVectors.size());
+  constants.back() = kElements.back();
+  return Expression::parse(text, kVectors, constants).evaluate(kElements);
+}
+
+std::string element_error(const std::string& text) {
+  try {
+    element(text);
+  } catch (const ExpressionError& error) {
+    return std::to_string(error.column()) + ": " + error.what();
+  }
+  return "no error";
+}
+
+TEST(Expression, FindsTheElementsOfVectors) {
+  EXPECT_EQ(element("t[2,3]"), 23.0);
+  EXPECT_EQ(element("t [ 1 + 1 , (3) ]+u[4]"), 27.0);
+  EXPECT_EQ(element("t[n, 7 - 2 * n] / u[n^n]"), 23.0 / 4.0);
+  EXPECT_EQ(element("t[if(1 < 2, 2, 5), max(1, 2)] - u[1] * w"), 21.5);
+  EXPECT_EQ(element("-u[3] ^ 2"), -9.0);
+  const Expression f = Expression::parse("2 * t[ 2, 1+1 ] + w", kVectors);
+  EXPECT_EQ(f.text(), "2 * t[2,2] + w");
+  EXPECT_THAT(f.names_used(), testing::ElementsAre(0, 5));
+  EXPECT_EQ(Expression::parse(f.text(), kVectors).evaluate(kElements), 44.5);
+  EXPECT_EQ(element_name("t", std::vector<int>{2, 3}), "t[2,3]");
+  EXPECT_EQ(shape_text(std::vector<int>{8, 12, 3}), "8 x 12 x 3");
+}
+
+TEST(Expression, TellsWhichIndexIsWrongAndTheShape) {
+  EXPECT_EQ(element_error("1 + t[3,1]"),
+            "5: t[3,1] is not there: 't' is 2 x 3, counted from 1, in "
+            "'1 + t[3,1]'");
+  EXPECT_THAT(element_error("u[0]"), HasSubstr("'u' is 4, counted from 1"));
+  EXPECT_THAT(element_error("u[-1]"), HasSubstr("u[-1] is not there"));
+  EXPECT_THAT(element_error("u[1e300]"), HasSubstr("u[1e+300] is not there"));
+  EXPECT_THAT(element_error("t[2]"),
+              HasSubstr("1: t[2] has 1 of 2 indices: 't' is 2 x 3, written "
+                        "t[i, j]"));
+  EXPECT_THAT(element_error("u[1, 2]"), HasSubstr("2 of 1 indices"));
+  EXPECT_THAT(element_error("t[]"),
+              HasSubstr("3: an index is missing: 't' is 2 x 3"));
+  EXPECT_THAT(element_error("t[1,]"), HasSubstr("an index is missing"));
+  EXPECT_THAT(element_error("t[,1]"), HasSubstr("an index is missing"));
+  EXPECT_THAT(element_error("u[1.5]"),
+              HasSubstr("3: the index 1.5 of 'u' is not whole: 'u' is 4"));
+  EXPECT_THAT(element_error("u[1 + w]"),
+              HasSubstr("depends on 'w', which moves or has no value: 'u' is "
+                        "4"));
+  EXPECT_THAT(element_error("u[t[1,1]]"), HasSubstr("depends on 't[1,1]'"));
+  EXPECT_THAT(element_error("u[1/0]"), HasSubstr("division of 1 by zero"));
+  EXPECT_THAT(element_error("u[1"), HasSubstr("']' is missing before 'end'"));
+  EXPECT_THAT(element_error("u[1) + 2"), HasSubstr("']' is missing before ')"));
+  EXPECT_THAT(element_error("2 * t"),
+              HasSubstr("5: 't' has 2 x 3 elements: write one of them, "
+                        "t[i, j]"));
+  EXPECT_THAT(element_error("w[1]"), HasSubstr("2: unexpected '['"));
+  EXPECT_THAT(element_error("tt[1, 1]"), HasSubstr("unknown name 'tt'"));
+  EXPECT_THAT(element_error("u(1)"), HasSubstr("unknown function 'u'"));
+}
+
+TEST(Expression, BindsElementsInItsText) {
+  const std::vector<std::string> names = {"t", "t[1,2]", "a"};
+  const std::vector<double> values = {7, 0.25, 3};
+  EXPECT_EQ(with_values("t[1,2] * a - x", names, values), "(0.25) * (3) - x");
+  EXPECT_EQ(with_values("u[a, a] + t[", names, values), "u[(3), (3)] + (7)[");
+  const Expression f = Expression::parse("u[3] * w + t[2, 1]", kVectors);
+  const std::string bound = with_values(f.text(), kVectors, kElements);
+  EXPECT_EQ(Expression::parse(bound, {}).evaluate(std::span<const double>{}),
+            f.evaluate(kElements));
+}
+
 TEST(Expression, RefusesResultsThatAreNotFinite) {
   EXPECT_EQ(error_of("1/support_x"),
             "2: division of 1 by zero in '1/support_x'");
@@ -107,6 +188,17 @@ TEST(Expression, RefusesResultsThatAreNotFinite) {
   EXPECT_THAT(error_of("1e200 * 1e200"),
               HasSubstr("1e+200 * 1e+200 is not a finite"));
   EXPECT_THAT(error_of("log(support_x)"), HasSubstr("log(0) is not a finite"));
+  EXPECT_THAT(
+      [] {
+        try {
+          Expression::parse("1 + t[1,2] * 2", {"t[1,1]", "t[1,2]"})
+              .evaluate(std::vector<double>{1, std::nan("")});
+        } catch (const ExpressionError& error) {
+          return std::string(error.what());
+        }
+        return std::string();
+      }(),
+      HasSubstr("'t[1,2]' is nan, not a finite number"));
   EXPECT_THAT(error_of("0 * support_x", {0, 0, std::nan("")}),
               HasSubstr("5: 'support_x' is nan, not a finite number"));
 }
@@ -138,6 +230,10 @@ TEST(Expression, ReadsAPointWhateverTheLocale) {
 }
 
 TEST(Expression, SurvivesRandomText) {
+  const auto random_value = [](const std::string& text) {
+    return Expression::parse(text, {"a", "b", "u[1]", "u[2]"})
+        .evaluate(std::vector<double>{2, 3, 5, 7});
+  };
   // No crash, no endless loop; either a finite number or a message.
   const std::vector<std::string> pieces = {"a",    "b",
                                            "1",    ".",
@@ -149,6 +245,8 @@ TEST(Expression, SurvivesRandomText) {
                                            "=",    "if(",
                                            "min(", "sin(",
                                            " ",    "2e",
+                                           "[",    "]",
+                                           "u[",   "u[2]",
                                            "\xC3", std::string(1, '\0'),
                                            "!"};
   std::mt19937 generator(11);
@@ -160,7 +258,7 @@ TEST(Expression, SurvivesRandomText) {
       text += pieces[generator() % pieces.size()];
     }
     try {
-      EXPECT_TRUE(std::isfinite(value(text))) << text;
+      EXPECT_TRUE(std::isfinite(random_value(text))) << text;
       ++good;
     } catch (const ExpressionError& error) {
       EXPECT_GE(error.column(), 1) << text;

@@ -104,9 +104,11 @@ TEST(Describe, NamesWhatTheStudyAsksForWhereThereIsMuch) {
   record.number = 7;
   record.phase = "step";
   const int variables = 9;
-  for (int k = 0; k < variables; ++k) {
-    record.input_names.push_back("x" + std::to_string(k));
+  input.design.resize(variables);
+  for (std::size_t k = 0; k < input.design.size(); ++k) {
+    input.design[k].name = "x" + std::to_string(k);
   }
+  record.input_names = case_data::design_names(input);
   record.inputs = VectorX::Constant(variables, 2.0);
   const case_data::ResponseEntry margin = input.responses[0];
   while (input.responses.size() < 20) {
@@ -124,9 +126,17 @@ TEST(Describe, NamesWhatTheStudyAsksForWhereThereIsMuch) {
   EXPECT_THAT(text, HasSubstr("evaluation 7 (step): mass = "));
   EXPECT_THAT(text, HasSubstr("lost = "));
   EXPECT_LT(text.size(), 200U);
+  input.design.resize(2);
   record.input_names.resize(2);
   record.inputs.conservativeResize(2);
   EXPECT_THAT(study::describe(input, record), HasSubstr("x0 = 2 x1 = 2; mass"));
+  // A vector counts as one.
+  input.design.resize(variables);
+  input.vectors = {{.name = "t", .shape = {2, 4}, .first = 1}};
+  record.input_names = case_data::design_names(input);
+  record.inputs = VectorX::LinSpaced(variables, 1.0, 9.0);
+  EXPECT_THAT(study::describe(input, record),
+              HasSubstr("x0 = 1 t = 2 to 9, mean 5.5; mass"));
   record.failure = Failure{FailureKind::FilmPinched, "a neck"};
   EXPECT_THAT(study::describe(input, record),
               HasSubstr("; cannot evaluate here: a neck"));

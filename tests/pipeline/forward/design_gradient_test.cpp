@@ -1,6 +1,7 @@
 /// The exact gradient through film, mesh and elasticity against central
 /// differences of the same map.
 #include <omp.h>
+#include <set>
 
 #include <gmock/gmock.h>
 
@@ -200,6 +201,44 @@ TEST(DesignGradient, IsExactAlongDirectionsOfAllVariablesToo) {
     EXPECT_EQ(check.report.rows[0].variable, "direction 1");
     EXPECT_NE(check.report.rows[0].given, check.report.rows[1].given);
   }
+}
+
+// By each element of a small vector, by eight and a direction of a large one.
+TEST(DesignGradient, OfVectorsIsExact) {
+  const std::string coarse =
+      changed(petal_strut(), "fea = 6.0\nfilm = 3.0", "fea = 12.0\nfilm = 6.0");
+  expect_exact(coarse, VectorX::LinSpaced(6, -1.0, 1.5));
+  // In a tension, and in a pressure that is an expression of the place.
+  expect_exact(changed(changed(coarse, "curves = [\"base\", \"head\"]",
+                               "curves = [\"base\", \"head\"]\n"
+                               "tension = \"t[1, 1] / 25\""),
+                       "force = [\"load\", 0, 0]",
+                       "pressure = \"t[1, 2] / 10 + t[2, 1 + 1] * x / 300\""),
+               VectorX::LinSpaced(6, -1.0, 1.5));
+  const std::string text =
+      changed(changed(changed(coarse, "shape = [2, 3]", "shape = [4, 3]"),
+                      "t[i, j] * cos((j + 3 * i) * pi / 3)",
+                      "t[i, j] * cos((j + 3 * i) * pi / 6)"),
+              "t[i, j] * sin((j + 3 * i) * pi / 3)\", 0], repeat = [2, 3]",
+              "t[i, j] * sin((j + 3 * i) * pi / 6)\", 0], repeat = [4, 3]");
+  const case_data::Case input = case_of(text);
+  const VectorX design =
+      case_data::initial_design(input) + VectorX::LinSpaced(12, -1.0, 1.0);
+  const forward::CaseGradientCheck check =
+      forward::check_case_gradient(input, design);
+  EXPECT_TRUE(check.report.passed)
+      << forward::gradient_check_text(input, check);
+  EXPECT_THAT(check.sampled,
+              testing::ElementsAre("t [4 x 3]: 8 of its 12 elements at random "
+                                   "and a direction of them all"));
+  std::set<std::string> looked;
+  for (const optimize::GradientCheckRow& row : check.report.rows) {
+    looked.insert(row.variable);
+  }
+  EXPECT_EQ(looked.size(), 9U);
+  EXPECT_TRUE(looked.count("t, direction"));
+  EXPECT_THAT(forward::gradient_check_text(input, check),
+              testing::HasSubstr("8 of its 12 elements at random"));
 }
 
 TEST(DesignGradient, OfEigenvaluesIsExact) {

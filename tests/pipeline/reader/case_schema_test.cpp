@@ -51,15 +51,8 @@ void validate(const json& schema, const json& value, const std::string& path,
       problems.push_back(path + ": size");
     }
     for (const json& item : value) {
-      validate(schema["items"], item, path + "[]", problems);
-    }
-  }
-  if (!value.is_object()) {
-    return;
-  }
-  for (const json& key : schema.value("required", json::array())) {
-    if (!value.contains(key.get<std::string>())) {
-      problems.push_back(path + ": needs " + key.get<std::string>());
+      validate(schema.value("items", json::object()), item, path + "[]",
+               problems);
     }
   }
   const json any = schema.value("anyOf", json::array());
@@ -70,6 +63,14 @@ void validate(const json& schema, const json& value, const std::string& path,
         return found.empty();
       })) {
     problems.push_back(path + ": none of anyOf");
+  }
+  if (!value.is_object()) {
+    return;
+  }
+  for (const json& key : schema.value("required", json::array())) {
+    if (!value.contains(key.get<std::string>())) {
+      problems.push_back(path + ": needs " + key.get<std::string>());
+    }
   }
   for (const auto& [key, item] : value.items()) {
     const json properties = schema.value("properties", json::object());
@@ -115,6 +116,29 @@ TEST(JsonSchema, AcceptsTheCasesThatTheReaderAccepts) {
   EXPECT_THAT(
       against_schema(tube("films = [\"skin\"]\nthickness = \"z + 1\"\n")),
       testing::IsEmpty());
+}
+
+TEST(JsonSchema, KnowsVectorsOfDesignVariables) {
+  const std::string text = petal_strut();
+  EXPECT_THAT(against_schema(text), testing::IsEmpty());
+  EXPECT_THAT(against_schema(changed(
+                  changed(text, "initial = 25.0",
+                          "initial = [[21, \"22 mm\", 23], [24, 25, 26]]"),
+                  "bounds = [20.0, 32.0]",
+                  "bounds = [20, [[27, 28, 29], [30, 31, \"3.2 cm\"]]]")),
+              testing::IsEmpty());
+  for (const char* shape : {"\"six\"", "[]", "[2, 3.5]", "[1, 1, 2, 3]"}) {
+    EXPECT_THAT(against_schema(changed(text, "shape = [2, 3]",
+                                       std::string("shape = ") + shape)),
+                testing::ElementsAre(".design.t.shape: none of anyOf"))
+        << shape;
+  }
+  for (const char* bounds : {"[20]", "20", "[true, 3]"}) {
+    EXPECT_THAT(against_schema(changed(text, "bounds = [20.0, 32.0]",
+                                       std::string("bounds = ") + bounds)),
+                testing::Not(testing::IsEmpty()))
+        << bounds;
+  }
 }
 
 TEST(JsonSchema, RefusesWhatTheReaderRefuses) {

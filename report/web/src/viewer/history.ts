@@ -2,7 +2,8 @@ import type { PageData } from "../data";
 import { h } from "../dom";
 import { words } from "../format";
 import { historyOf } from "../history";
-import { inputsOf, responsesOf } from "../measures";
+import { responsesOf } from "../measures";
+import { designRows } from "../rows";
 
 /** A slider through the designs that the study looked at; null: none kept. */
 export function historyControl(
@@ -35,9 +36,7 @@ export function historyControl(
     const evaluation = frames[index].evaluation;
     const row = rows.find((r) => r.evaluation === evaluation);
     const numbers = [
-      ...(data.case?.design ?? []).map(
-        (d) => `${words(d.name)} ${inputsOf(data).text(d.name, row?.values[d.name])}`,
-      ),
+      ...designRows(data).map((d) => `${d.label} ${d.text(row?.values)}`),
       ...(data.case?.responses ?? []).map(
         (r) => `${words(r.name)} ${responsesOf(data).text(r.name, row?.values[r.name])}`,
       ),

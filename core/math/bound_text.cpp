@@ -1,20 +1,17 @@
-#include "pipeline/case_data/bound_text.h"
+#include "core/math/bound_text.h"
 
 #include <algorithm>
-#include <cctype>
 
 #include <fmt/format.h>
 
-namespace meniscus::case_data {
+#include "core/math/expression_code.h"
+
+namespace meniscus {
 
 namespace {
 
-bool is_letter(char c) {
-  return c == '_' || std::isalpha(static_cast<unsigned char>(c)) != 0;
-}
-bool is_digit(char c) {
-  return std::isdigit(static_cast<unsigned char>(c)) != 0;
-}
+using expression_code::is_digit;
+using expression_code::is_letter;
 
 /// Past the number that starts at `at`, its exponent included: its e is no
 /// name.
@@ -47,8 +44,17 @@ std::string with_values(const std::string& text,
       while (at < text.size() && (is_letter(text[at]) || is_digit(text[at]))) {
         ++at;
       }
-      const auto name =
-          std::find(names.begin(), names.end(), text.substr(start, at - start));
+      auto name = names.end();
+      if (at < text.size() && text[at] == '[') {  // an element of a vector
+        const std::size_t close = std::min(text.find(']', at), text.size() - 1);
+        name = std::find(names.begin(), names.end(),
+                         text.substr(start, close + 1 - start));
+        at = name == names.end() ? at : close + 1;
+      }
+      if (name == names.end()) {
+        name = std::find(names.begin(), names.end(),
+                         text.substr(start, at - start));
+      }
       if (name != names.end()) {
         const auto k = static_cast<std::size_t>(name - names.begin());
         result += fmt::format("({})", values[k]);
@@ -62,4 +68,4 @@ std::string with_values(const std::string& text,
   return result;
 }
 
-}  // namespace meniscus::case_data
+}  // namespace meniscus

@@ -1,4 +1,4 @@
-#include "pipeline/reader/member_file.h"
+#include "pipeline/members/member_file.h"
 
 #include <algorithm>
 #include <map>
@@ -10,7 +10,7 @@
 #include "core/error.h"
 #include "pipeline/files/text_table.h"
 
-namespace meniscus::reader {
+namespace meniscus::members {
 
 namespace {
 
@@ -171,4 +171,4 @@ MemberFile read_member_file(const std::string& path) {
   }
 }
 
-}  // namespace meniscus::reader
+}  // namespace meniscus::members

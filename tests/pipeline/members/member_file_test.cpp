@@ -1,4 +1,4 @@
-#include "pipeline/reader/member_file.h"
+#include "pipeline/members/member_file.h"
 
 #include <gtest/gtest.h>
 
@@ -38,7 +38,7 @@ TEST(TextTable, ColumnsAlignByCharacters) {
 }
 
 TEST(MemberFile, RowsBecomeOverrides) {
-  const reader::MemberFile file = reader::read_member_text(
+  const members::MemberFile file = members::read_member_text(
       "name,length,design.fill.lower,design.fill.upper,\"loads\"\n"
       "a,60,,,\nb-2,70 mm,0.9,1.4,\"[1, 2]\"\n",
       "m.csv");
@@ -53,19 +53,19 @@ TEST(MemberFile, RowsBecomeOverrides) {
 }
 
 TEST(MemberFile, OneBoundAloneIsToldByLine) {
-  const reader::MemberFile file =
-      reader::read_member_text("name,f.lower,f.upper\na,1,\nb,,2\n", "m.csv");
+  const members::MemberFile file =
+      members::read_member_text("name,f.lower,f.upper\na,1,\nb,,2\n", "m.csv");
   ASSERT_EQ(file.problems.size(), 2U);
   EXPECT_EQ(file.problems[0].substr(0, 8), "m.csv:2:");
   EXPECT_EQ(file.problems[1].substr(0, 8), "m.csv:3:");
 }
 
 TEST(MemberFile, NamesMakeFolders) {
-  EXPECT_TRUE(reader::is_member_name("s60_far-2"));
+  EXPECT_TRUE(members::is_member_name("s60_far-2"));
   for (const char* name : {"", "-a", "a/b", "..", "a b", "\xc3\xa4"}) {
-    EXPECT_FALSE(reader::is_member_name(name)) << name;
+    EXPECT_FALSE(members::is_member_name(name)) << name;
   }
-  EXPECT_FALSE(reader::is_member_name(std::string(81, 'a')));
+  EXPECT_FALSE(members::is_member_name(std::string(81, 'a')));
 }
 
 }  // namespace

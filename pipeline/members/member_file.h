@@ -6,7 +6,7 @@
 
 #include "pipeline/case_data/case_entries.h"
 
-namespace meniscus::reader {
+namespace meniscus::members {
 
 /// Of one table of members that are told; more are counted.
 inline constexpr std::size_t kMostProblems = 20;
@@ -29,4 +29,4 @@ MemberFile read_member_file(const std::string& path);
 /// The name makes a folder: letters, digits, _ and -, at most 80.
 bool is_member_name(const std::string& name);
 
-}  // namespace meniscus::reader
+}  // namespace meniscus::members

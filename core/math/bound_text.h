@@ -5,12 +5,13 @@
 #include <string>
 #include <vector>
 
-namespace meniscus::case_data {
+namespace meniscus {
 
 /// The text with each of `names` replaced by its value, in parentheses and to
-/// the last bit; other names and functions stay.
+/// the last bit; other names and functions stay. An element of a vector is
+/// found as Expression::text() has it, "t[2,3]".
 std::string with_values(const std::string& text,
                         const std::vector<std::string>& names,
                         std::span<const double> values);
 
-}  // namespace meniscus::case_data
+}  // namespace meniscus
