@@ -3,13 +3,15 @@
 Evolver from the same datafile: who settles what, at which energy, in which time.
 Ends with 1 where Evolver holds a film for stable that the program refuses.
 Use: film_problems.py PROGRAM [--kinds tube,bad] [--count 20] [--first 0]
-     [--facets 2000] [--limit 60] [--seed 1] [--keep FOLDER], from anywhere."""
+     [--facets 2000] [--limit 60] [--seed 1] [--keep FOLDER], from anywhere; or
+     film_problems.py PROGRAM --settles tube_2,strut_0: these, without Evolver."""
 import argparse
 import json
 import os
 import pathlib
 import re
 import resource
+import shutil
 import statistics
 import subprocess
 import sys
@@ -86,6 +88,7 @@ def by_evolver(film, folder, levels, limit):
 
 
 def by_program(program, folder, levels):
+    shutil.rmtree(folder / "out", ignore_errors=True)
     output, seconds = seconds_of(
         [program, "evolve", "start.fe", "--refine", str(levels), "--quiet",
          "--no-pictures", "--out", "out"], folder, OUR_LIMIT)
@@ -151,6 +154,22 @@ def summary(rows):
     return missed
 
 
+def settles(options, folder):
+    """Those of options.settles that the program refuses, with its reason."""
+    missed = []
+    for name in options.settles.split(","):
+        kind, number = name.split("_")
+        film = film_starts.problem(kind, int(number), options.seed)
+        (folder / "start.fe").write_text(film.text())
+        own = by_program(options.program, folder,
+                         refinements(film, options.facets))
+        print(f"{name}: {own['facets']} facets, energy {own['energy']}, "
+              f"{own['why']}")
+        if not own["settled"]:
+            missed.append(f"{name}: refused: {own['why']}")
+    return missed
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("program", type=lambda p: str(pathlib.Path(p).resolve()))
@@ -161,7 +180,14 @@ def main():
     parser.add_argument("--limit", type=float, default=60)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--keep", help="leave the datafiles here")
+    parser.add_argument("--settles", help="names as tube_2, by the program alone")
     options = parser.parse_args()
+    if options.settles:
+        with tempfile.TemporaryDirectory(prefix="meniscus film ") as name:
+            missed = settles(options, pathlib.Path(name))
+        for line in missed:
+            print("MISSED:", line)
+        return 1 if missed else 0
     rows = []
     for kind in options.kinds.split(","):
         for number in range(options.first, options.first + options.count):
