@@ -32,9 +32,9 @@ std::size_t skip_number(const std::string& text, std::size_t at) {
 
 }  // namespace
 
-std::string with_values(const std::string& text,
-                        const std::vector<std::string>& names,
-                        std::span<const double> values) {
+std::string with_texts(const std::string& text,
+                       const std::vector<std::string>& names,
+                       const std::vector<std::string>& texts) {
   std::string result;
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t start = at;
@@ -56,8 +56,7 @@ std::string with_values(const std::string& text,
                          text.substr(start, at - start));
       }
       if (name != names.end()) {
-        const auto k = static_cast<std::size_t>(name - names.begin());
-        result += fmt::format("({})", values[k]);
+        result += texts[static_cast<std::size_t>(name - names.begin())];
         continue;
       }
     } else {
@@ -66,6 +65,17 @@ std::string with_values(const std::string& text,
     result.append(text, start, at - start);
   }
   return result;
+}
+
+std::string with_values(const std::string& text,
+                        const std::vector<std::string>& names,
+                        std::span<const double> values) {
+  std::vector<std::string> texts;
+  texts.reserve(values.size());
+  for (const double value : values) {
+    texts.push_back(fmt::format("({})", value));
+  }
+  return with_texts(text, names, texts);
 }
 
 }  // namespace meniscus

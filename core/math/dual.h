@@ -8,13 +8,118 @@
 
 namespace meniscus {
 
-template <int N>
-struct BasicDual;
-
 /// g's partial derivatives at two values.
 struct Partials {
   double a, b, aa, ab, bb;
 };
+
+/// Arithmetic of numbers that carry derivatives: each operation is its value
+/// and partial derivatives, handed to chain(), which Number must have for one
+/// operand and for two.
+template <class Number>
+struct DualArithmetic {
+  friend Number operator-(const Number& a) {
+    return chain(a, -a.value, -1.0, 0.0);
+  }
+  friend Number operator+(const Number& a, const Number& b) {
+    return chain(a, b, a.value + b.value, {1, 1, 0, 0, 0});
+  }
+  friend Number operator-(const Number& a, const Number& b) {
+    return chain(a, b, a.value - b.value, {1, -1, 0, 0, 0});
+  }
+  friend Number operator*(const Number& a, const Number& b) {
+    return chain(a, b, a.value * b.value, {b.value, a.value, 0, 1, 0});
+  }
+  friend Number operator/(const Number& a, const Number& b) {
+    const double r = 1.0 / b.value;
+    const double q = a.value / b.value;
+    return chain(a, b, q, {r, -q * r, 0, -r * r, 2 * q * r * r});
+  }
+
+  friend Number sin(const Number& a) {
+    const double s = std::sin(a.value);
+    return chain(a, s, std::cos(a.value), -s);
+  }
+  friend Number cos(const Number& a) {
+    const double c = std::cos(a.value);
+    return chain(a, c, -std::sin(a.value), -c);
+  }
+  friend Number tan(const Number& a) {
+    const double t = std::tan(a.value);
+    return chain(a, t, 1 + t * t, 2 * t * (1 + t * t));
+  }
+  friend Number asin(const Number& a) {
+    const double w = 1 - a.value * a.value;
+    return chain(a, std::asin(a.value), 1 / std::sqrt(w),
+                 a.value / (w * std::sqrt(w)));
+  }
+  friend Number acos(const Number& a) {
+    const double w = 1 - a.value * a.value;
+    return chain(a, std::acos(a.value), -1 / std::sqrt(w),
+                 -a.value / (w * std::sqrt(w)));
+  }
+  friend Number atan(const Number& a) {
+    const double w = 1 + a.value * a.value;
+    return chain(a, std::atan(a.value), 1 / w, -2 * a.value / (w * w));
+  }
+  friend Number atan2(const Number& y, const Number& x) {
+    const double w = y.value * y.value + x.value * x.value;
+    const double xy = 2 * x.value * y.value / (w * w);
+    const double dd = (y.value * y.value - x.value * x.value) / (w * w);
+    return chain(y, x, std::atan2(y.value, x.value),
+                 {x.value / w, -y.value / w, -xy, dd, xy});
+  }
+  friend Number sinh(const Number& a) {
+    const double s = std::sinh(a.value);
+    return chain(a, s, std::cosh(a.value), s);
+  }
+  friend Number cosh(const Number& a) {
+    const double c = std::cosh(a.value);
+    return chain(a, c, std::sinh(a.value), c);
+  }
+  friend Number tanh(const Number& a) {
+    const double t = std::tanh(a.value);
+    return chain(a, t, 1 - t * t, -2 * t * (1 - t * t));
+  }
+  friend Number exp(const Number& a) {
+    const double e = std::exp(a.value);
+    return chain(a, e, e, e);
+  }
+  friend Number log(const Number& a) {
+    return chain(a, std::log(a.value), 1 / a.value, -1 / (a.value * a.value));
+  }
+  friend Number sqrt(const Number& a) {
+    const double s = std::sqrt(a.value);
+    return chain(a, s, 0.5 / s, -0.25 / (s * a.value));
+  }
+  /// Not smooth at 0.
+  friend Number abs(const Number& a) {
+    return chain(a, std::abs(a.value), a.value < 0 ? -1.0 : 1.0, 0.0);
+  }
+  friend Number pow(const Number& a, const Number& b) {
+    const double p = std::pow(a.value, b.value);
+    if (b.is_constant()) {
+      const double n = b.value;
+      const double first = n == 0 ? 0.0 : n * std::pow(a.value, n - 1);
+      const double second =
+          n == 0 || n == 1 ? 0.0 : n * (n - 1) * std::pow(a.value, n - 2);
+      return chain(a, p, first, second);
+    }
+    const double n = b.value;
+    if (a.value == 0.0 && n > 1.0) {  // a^n log a is 0 there
+      return chain(a, b, p,
+                   {0.0, 0.0, n * (n - 1) * std::pow(a.value, n - 2), 0, 0});
+    }
+    const double l = std::log(a.value);
+    return chain(a, b, p,
+                 {n * std::pow(a.value, n - 1), p * l,
+                  n * (n - 1) * std::pow(a.value, n - 2),
+                  std::pow(a.value, n - 1) * (1 + n * l), p * l * l});
+  }
+};
+
+template <int N>
+struct BasicDual;
 
 /// g(a) from g, g' and g'' at a's value.
 template <int N>
@@ -29,7 +134,7 @@ BasicDual<N> chain(const BasicDual<N>& a, const BasicDual<N>& b, double g,
 /// known only at run time (Eigen::Dynamic). Constants have no derivatives: for
 /// Dynamic empty, else zero.
 template <int N>
-struct BasicDual {
+struct BasicDual : DualArithmetic<BasicDual<N>> {
   double value = 0.0;
   bool varies = false;  // not a constant
   Eigen::Matrix<double, N, 1> gradient;
@@ -53,101 +158,6 @@ struct BasicDual {
   }
 
   bool is_constant() const { return !varies; }
-
-  friend BasicDual operator-(const BasicDual& a) {
-    return chain(a, -a.value, -1.0, 0.0);
-  }
-  friend BasicDual operator+(const BasicDual& a, const BasicDual& b) {
-    return chain(a, b, a.value + b.value, {1, 1, 0, 0, 0});
-  }
-  friend BasicDual operator-(const BasicDual& a, const BasicDual& b) {
-    return chain(a, b, a.value - b.value, {1, -1, 0, 0, 0});
-  }
-  friend BasicDual operator*(const BasicDual& a, const BasicDual& b) {
-    return chain(a, b, a.value * b.value, {b.value, a.value, 0, 1, 0});
-  }
-  friend BasicDual operator/(const BasicDual& a, const BasicDual& b) {
-    const double r = 1.0 / b.value;
-    const double q = a.value / b.value;
-    return chain(a, b, q, {r, -q * r, 0, -r * r, 2 * q * r * r});
-  }
-
-  friend BasicDual sin(const BasicDual& a) {
-    const double s = std::sin(a.value);
-    return chain(a, s, std::cos(a.value), -s);
-  }
-  friend BasicDual cos(const BasicDual& a) {
-    const double c = std::cos(a.value);
-    return chain(a, c, -std::sin(a.value), -c);
-  }
-  friend BasicDual tan(const BasicDual& a) {
-    const double t = std::tan(a.value);
-    return chain(a, t, 1 + t * t, 2 * t * (1 + t * t));
-  }
-  friend BasicDual asin(const BasicDual& a) {
-    const double w = 1 - a.value * a.value;
-    return chain(a, std::asin(a.value), 1 / std::sqrt(w),
-                 a.value / (w * std::sqrt(w)));
-  }
-  friend BasicDual acos(const BasicDual& a) {
-    const double w = 1 - a.value * a.value;
-    return chain(a, std::acos(a.value), -1 / std::sqrt(w),
-                 -a.value / (w * std::sqrt(w)));
-  }
-  friend BasicDual atan(const BasicDual& a) {
-    const double w = 1 + a.value * a.value;
-    return chain(a, std::atan(a.value), 1 / w, -2 * a.value / (w * w));
-  }
-  friend BasicDual atan2(const BasicDual& y, const BasicDual& x) {
-    const double w = y.value * y.value + x.value * x.value;
-    const double xy = 2 * x.value * y.value / (w * w);
-    const double dd = (y.value * y.value - x.value * x.value) / (w * w);
-    return chain(y, x, std::atan2(y.value, x.value),
-                 {x.value / w, -y.value / w, -xy, dd, xy});
-  }
-  friend BasicDual sinh(const BasicDual& a) {
-    const double s = std::sinh(a.value);
-    return chain(a, s, std::cosh(a.value), s);
-  }
-  friend BasicDual cosh(const BasicDual& a) {
-    const double c = std::cosh(a.value);
-    return chain(a, c, std::sinh(a.value), c);
-  }
-  friend BasicDual tanh(const BasicDual& a) {
-    const double t = std::tanh(a.value);
-    return chain(a, t, 1 - t * t, -2 * t * (1 - t * t));
-  }
-  friend BasicDual exp(const BasicDual& a) {
-    const double e = std::exp(a.value);
-    return chain(a, e, e, e);
-  }
-  friend BasicDual log(const BasicDual& a) {
-    return chain(a, std::log(a.value), 1 / a.value, -1 / (a.value * a.value));
-  }
-  friend BasicDual sqrt(const BasicDual& a) {
-    const double s = std::sqrt(a.value);
-    return chain(a, s, 0.5 / s, -0.25 / (s * a.value));
-  }
-  /// Not smooth at 0.
-  friend BasicDual abs(const BasicDual& a) {
-    return chain(a, std::abs(a.value), a.value < 0 ? -1.0 : 1.0, 0.0);
-  }
-  friend BasicDual pow(const BasicDual& a, const BasicDual& b) {
-    const double p = std::pow(a.value, b.value);
-    if (b.is_constant()) {
-      const double n = b.value;
-      const double first = n == 0 ? 0.0 : n * std::pow(a.value, n - 1);
-      const double second =
-          n == 0 || n == 1 ? 0.0 : n * (n - 1) * std::pow(a.value, n - 2);
-      return chain(a, p, first, second);
-    }
-    const double l = std::log(a.value);
-    const double n = b.value;
-    return chain(a, b, p,
-                 {n * std::pow(a.value, n - 1), p * l,
-                  n * (n - 1) * std::pow(a.value, n - 2),
-                  std::pow(a.value, n - 1) * (1 + n * l), p * l * l});
-  }
 };
 
 using Dual = BasicDual<Eigen::Dynamic>;

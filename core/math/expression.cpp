@@ -9,6 +9,7 @@
 #include <fmt/ranges.h>
 
 #include "core/math/expression_code.h"
+#include "core/math/taped.h"
 
 namespace meniscus {
 
@@ -21,8 +22,8 @@ constexpr std::array<const char*, FirstFunction - Negate> kSymbols = {
     "-", "+", "-", "*", "/", "^", "<", "<=", ">", ">=", "==", "!="};
 
 double value_of(double x) { return x; }
-template <int N>
-double value_of(const BasicDual<N>& x) {
+template <class Number>
+double value_of(const Number& x) {
   return x.value;
 }
 
@@ -31,6 +32,10 @@ template <int N>
 bool is_finite(const BasicDual<N>& x) {
   return std::isfinite(x.value) &&
          (x.is_constant() || (x.gradient.allFinite() && x.hessian.allFinite()));
+}
+
+bool is_finite(const Taped& x) {
+  return std::isfinite(x.value) && std::isfinite(x.rate);
 }
 
 template <class Scalar>
@@ -211,6 +216,23 @@ Dual Expression::evaluate(std::span<const Dual> values) const {
 
 Dual3 Expression::evaluate(std::span<const Dual3> values) const {
   return run(values);
+}
+
+Expression::Rate Expression::transpose(std::span<const double> values,
+                                       std::span<const double> rates,
+                                       double by_value, double by_rate,
+                                       std::span<double> by_values,
+                                       std::span<double> by_rates) const {
+  static thread_local Tape tape;
+  static thread_local std::vector<Taped> inputs;
+  tape.clear();
+  inputs.clear();
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    inputs.push_back(tape.input(values[k], rates[k]));
+  }
+  const Taped result = run(std::span<const Taped>(inputs));
+  tape.transpose(result, by_value, by_rate, by_values, by_rates);
+  return {result.value, result.rate};
 }
 
 bool Expression::is_constant() const {

@@ -62,6 +62,19 @@ class Expression {
   Dual evaluate(std::span<const Dual> values) const;
   Dual3 evaluate(std::span<const Dual3> values) const;
 
+  /// f at `values`, and df as these change at `rates`.
+  struct Rate {
+    double value = 0.0;
+    double rate = 0.0;
+  };
+  /// Adds the derivatives of by_value f + by_rate df to `by_values` by each
+  /// value and to `by_rates` by each rate, all of the length of `values`, at
+  /// the cost of a few evaluations whatever their number. Throws as
+  /// evaluate().
+  Rate transpose(std::span<const double> values, std::span<const double> rates,
+                 double by_value, double by_rate, std::span<double> by_values,
+                 std::span<double> by_rates) const;
+
   /// As it was read, elements by their names: "2 * t[2,3]".
   const std::string& text() const { return text_; }
   /// Positions of the names that appear, ascending.

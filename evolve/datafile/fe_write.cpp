@@ -55,7 +55,7 @@ class FeWriter {
       if (complex_.surfaces[s].tension_field) {
         add("quantity tension_of_surface_{} energy method "
             "facet_scalar_integral\nscalar_integrand: {}\n",
-            s + 1, text(*complex_.surfaces[s].tension_field));
+            s + 1, text(with_numbers(*complex_.surfaces[s].tension_field)));
       }
     }
     elements();
@@ -197,7 +197,7 @@ class FeWriter {
         break;
       case films::FilmQuantity::Kind::ScalarIntegral:
         add("facet_scalar_integral{}\nscalar_integrand: {}\n", where,
-            text(quantity.scalar));
+            text(with_numbers(quantity.scalar)));
         break;
       case films::FilmQuantity::Kind::Area:
         add("facet_area{}\n", where);

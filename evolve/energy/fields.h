@@ -11,23 +11,26 @@
 
 namespace meniscus::energy {
 
-/// phi as an expression over x, y, z. Throws InvalidInput: numbers that are
-/// not finite or out of range, a shape without length or normal, a polyline
-/// whose formula grows longer than expressions may be (about 35 segments).
-Expression field_expression(const films::FieldSpec& field);
+/// phi, its numbers those of the spec where that moves. Throws InvalidInput:
+/// numbers that are not finite or out of range, a shape without length or
+/// normal, a polyline whose formula grows longer than expressions may be (about
+/// 35 segments; 8 where its points move).
+PlaceField place_field(const films::FieldSpec& field);
+/// Its numbers, or its rates where the spec has these, unchecked.
+VectorX field_numbers(const films::FieldSpec& field);
 
 /// The field's energy, to be put into complex.quantities. Throws InvalidInput
 /// also for surfaces and bodies that the complex has not.
 films::FilmQuantity field_quantity(const films::FilmComplex& complex,
                                    const films::FieldSpec& field);
 
-/// The work of a pressure [force/length^2] that is an expression over x, y, z:
+/// The work of a pressure [force/length^2] that varies:
 /// minus its integral over the body (empty: over every body), on top of the
 /// body's own pressure. Positive: inflates. Throws InvalidInput.
 films::FilmQuantity pressure_quantity(const films::FilmComplex& complex,
                                       const std::string& name,
                                       const std::string& body,
-                                      const Expression& pressure);
+                                      const PlaceField& pressure);
 
 /// Text of the Macaulay bracket <s - offset>^power over x, y, z, s the
 /// distance along `direction` from the origin: 0 where s < offset. Power 0

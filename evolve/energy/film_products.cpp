@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/parallel_for.h"
 #include "evolve/energy/facet_terms.h"
 #include "evolve/energy/over_term.h"
 
@@ -269,11 +270,11 @@ double FilmProducts::term_step(const Points& points,
   return kTermStep * energy_.mean_edge(points) / std::max(most, 1e-300);
 }
 
-/// Calls each(term, quantity) for the energies whose fields have numbers.
+/// Calls each(term, field) for the energies whose fields have numbers.
 template <class Each>
 void FilmProducts::over_numbers(const Each& each) const {
   for (const auto& term : energy_.terms_) {
-    const auto q = static_cast<std::size_t>(term->quantity());
+    const auto q = static_cast<std::size_t>(term->field());
     if (term->has_numbers() && term->functional() == -1 &&
         q < numbers_.size()) {
       each(*term, q);
@@ -289,15 +290,36 @@ std::vector<VectorX> FilmProducts::no_numbers() const {
   return sum;
 }
 
+/// add(element, sum) for the elements of a term: chunk by chunk in threads, the
+/// chunks' sums added in their order.
+template <class Add>
+void FilmProducts::over_chunks(const FilmTerm& term, const Add& add,
+                               VectorX& sum) {
+  constexpr std::size_t kChunk = 512;
+  const std::vector<FilmTerm::Element>& all = term.elements();
+  std::vector<VectorX> parts((all.size() + kChunk - 1) / kChunk);
+  parallel_for(std::ssize(parts), [&](std::ptrdiff_t k) {
+    parts[k] = VectorX::Zero(sum.size());
+    const std::size_t first = static_cast<std::size_t>(k) * kChunk;
+    for (std::size_t i = first; i < std::min(first + kChunk, all.size()); ++i) {
+      add(all[i], parts[k]);
+    }
+  });
+  for (const VectorX& part : parts) {
+    sum += part;
+  }
+}
+
 void FilmProducts::add_number_slopes(const Points& points, const Points& motion,
                                      double factor,
                                      std::vector<VectorX>& sum) const {
   over_numbers([&](const FilmTerm& term, std::size_t q) {
-    for (const FilmTerm::Element& e : term.elements()) {
+    const auto add = [&](const FilmTerm::Element& e, VectorX& part) {
       const Triangle& at = energy_.facets_[e.facet];
       term.add_by_numbers(e, corners_of(points, at), corners_of(motion, at),
-                          factor, numbers_of(term, numbers_), sum[q]);
-    }
+                          factor, numbers_of(term, numbers_), part);
+    };
+    over_chunks(term, add, sum[q]);
   });
 }
 
@@ -306,14 +328,15 @@ std::vector<VectorX> FilmProducts::number_slopes(const Points& points,
                                                  double energies) const {
   std::vector<VectorX> sum = no_numbers();
   add_number_slopes(points, motion, energies_, sum);
+  if (energies == 0.0) {
+    return sum;
+  }
   over_numbers([&](const FilmTerm& term, std::size_t q) {
-    for (const FilmTerm::Element& e : term.elements()) {
-      if (energies == 0.0) {
-        break;
-      }
+    const auto add = [&](const FilmTerm::Element& e, VectorX& part) {
       term.add_value_by_numbers(e, corners_of(points, energy_.facets_[e.facet]),
-                                energies, numbers_of(term, numbers_), sum[q]);
-    }
+                                energies, numbers_of(term, numbers_), part);
+    };
+    over_chunks(term, add, sum[q]);
   });
   return sum;
 }
@@ -337,13 +360,17 @@ Points FilmProducts::number_motion(const Points& points,
     if (q >= rates.size() || rates[q].size() != numbers_[q].size()) {
       return;
     }
-    for (const FilmTerm::Element& e : term.elements()) {
-      const Triangle& at = energy_.facets_[e.facet];
-      const FilmTerm::Vector9 rate = term.gradient_rate(
-          e, corners_of(points, at), numbers_of(term, numbers_),
-          numbers_of(term, rates));
+    const std::vector<FilmTerm::Element>& all = term.elements();
+    std::vector<FilmTerm::Vector9> of_element(all.size());
+    parallel_for(std::ssize(all), [&](std::ptrdiff_t k) {
+      of_element[k] = term.gradient_rate(
+          all[k], corners_of(points, energy_.facets_[all[k].facet]),
+          numbers_of(term, numbers_), numbers_of(term, rates));
+    });
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const Triangle& at = energy_.facets_[all[i].facet];
       for (int k = 0; k < 3; ++k) {
-        sum[at[k]] += rate.segment<3>(3 * k);
+        sum[at[k]] += of_element[i].segment<3>(3 * k);
       }
     }
   });

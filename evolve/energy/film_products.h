@@ -27,14 +27,14 @@ class FilmProducts {
   /// And how fast that rate grows: motion . (d2 area x motion).
   VectorX area_curvatures(const Points& points, const Points& motion) const;
 
-  /// Per quantity the derivatives by its field's numbers: of motion . slope of
-  /// E, of `energies` x E itself added; empty: it has none.
+  /// Per field (FilmTerm::field) the derivatives by its numbers: of motion .
+  /// slope of E, of `energies` x E itself added; empty: it has none.
   std::vector<VectorX> number_slopes(const Points& points, const Points& motion,
                                      double energies) const;
   /// And of motion . (second derivative x motion), as third_times().
   std::vector<VectorX> number_curvatures(const Points& points,
                                          const Points& motion) const;
-  /// How fast the slope of E changes as the numbers do, one list per quantity.
+  /// How fast the slope of E changes as the numbers do, one list per field.
   Points number_motion(const Points& points,
                        const std::vector<VectorX>& rates) const;
 
@@ -60,6 +60,8 @@ class FilmProducts {
   bool has_terms() const;
   template <class Each>
   void over_numbers(const Each& each) const;
+  template <class Add>
+  static void over_chunks(const FilmTerm& term, const Add& add, VectorX& sum);
   void add_number_slopes(const Points& points, const Points& motion,
                          double factor, std::vector<VectorX>& sum) const;
   std::vector<VectorX> no_numbers() const;
@@ -67,7 +69,7 @@ class FilmProducts {
 
   const FilmEnergy& energy_;
   VectorX tension_;               // one per surface
-  std::vector<VectorX> numbers_;  // per quantity
+  std::vector<VectorX> numbers_;  // films::FilmTargets::numbers
   double energies_;               // factor of E's other terms
   VectorX pressure_;
 };

@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/math/dense.h"
+#include "core/math/place_field.h"
 
 namespace meniscus::energy {
 
@@ -32,41 +33,7 @@ int rank_of(int lines, int walls) {
   return std::max(0, normal - walls);
 }
 
-[[noreturn]] void fail_at(const ExpressionError& error, const Vec3& at) {
-  throw ExpressionError(fmt::format("{} at ({:.5g}, {:.5g}, {:.5g})",
-                                    error.what(), at.x(), at.y(), at.z()),
-                        error.column());
-}
-
 }  // namespace
-
-double value_at(const Expression& expression, const Vec3& at) {
-  try {
-    return expression.evaluate(std::span<const double>(at.data(), 3));
-  } catch (const ExpressionError& error) {
-    fail_at(error, at);
-  }
-}
-
-PlaceJet jet_at(const Expression& expression, const Vec3& at) {
-  PlaceJet jet;
-  if (expression.is_constant()) {
-    jet.value = value_at(expression, at);
-    return jet;
-  }
-  const std::array<Dual3, 3> values = {Dual3::variable(at.x(), 0),
-                                       Dual3::variable(at.y(), 1),
-                                       Dual3::variable(at.z(), 2)};
-  try {
-    const Dual3 dual = expression.evaluate(std::span<const Dual3>(values));
-    jet.value = dual.value;
-    jet.gradient = dual.gradient;
-    jet.hessian = dual.hessian;
-  } catch (const ExpressionError& error) {
-    fail_at(error, at);
-  }
-  return jet;
-}
 
 FilmSpace::FilmSpace(const films::FilmComplex& complex, FilmMotion motion)
     : facets_(complex.mesh.facets),

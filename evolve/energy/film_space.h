@@ -153,15 +153,4 @@ class FilmSpace {
 /// first of the line's two directions.
 Vec3 line_axis(const Vec3& t);
 
-/// f, its gradient and its Hessian at a place.
-struct PlaceJet {
-  double value = 0.0;
-  Vec3 gradient = Vec3::Zero();
-  Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();
-};
-/// An expression of x, y, z. Both throw ExpressionError, naming the place,
-/// where it has no value.
-double value_at(const Expression& expression, const Vec3& at);
-PlaceJet jet_at(const Expression& expression, const Vec3& at);
-
 }  // namespace meniscus::energy

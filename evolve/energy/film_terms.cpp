@@ -22,13 +22,14 @@ class FilmTermBuilder {
 
   void add(std::unique_ptr<FilmTerm> term,
            std::vector<FilmTerm::Element> elements, int functional,
-           int quantity = -1) {
+           int quantity = -1, int field = -1) {
     if (elements.empty()) {
       return;
     }
     term->elements_ = std::move(elements);
     term->functional_ = functional;
     term->quantity_ = quantity;
+    term->field_ = field >= 0 ? field : quantity;
     terms_.push_back(std::move(term));
   }
 
@@ -61,7 +62,8 @@ class FilmTermBuilder {
       const films::ComplexSurface& surface = complex_.surfaces[s];
       if (surface.liquid && surface.tension_field) {
         add(scalar_term(*surface.tension_field),
-            facets_of({static_cast<int>(s)}, 1.0), -1);
+            facets_of({static_cast<int>(s)}, 1.0), -1, -1,
+            static_cast<int>(complex_.quantities.size() + s));
       }
     }
   }
@@ -161,7 +163,8 @@ class FilmTermBuilder {
               factor, functional, number);
           break;
         case films::FilmQuantity::Kind::BodyScalarIntegral:
-          add_body_quantity(quantity, flux_term(body_field(quantity)), factor,
+          add_body_quantity(quantity,
+                            body_term(quantity.scalar, quantity.origin), factor,
                             functional, number);
           break;
         case films::FilmQuantity::Kind::BodyPoles:
@@ -370,7 +373,11 @@ films::FilmTargets targets_of(const films::FilmComplex& complex) {
     targets.numbers.push_back(quantity.kind ==
                                       films::FilmQuantity::Kind::BodyPoles
                                   ? pole_numbers(quantity.poles)
-                                  : VectorX());
+                                  : quantity.scalar.numbers);
+  }
+  for (const films::ComplexSurface& surface : complex.surfaces) {
+    targets.numbers.push_back(
+        surface.tension_field ? surface.tension_field->numbers : VectorX());
   }
   return targets;
 }

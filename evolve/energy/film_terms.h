@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "core/math/place_field.h"
 #include "evolve/films/film_complex.h"
 #include "evolve/films/film_targets.h"
 
@@ -21,9 +22,6 @@ struct FacetJet {
 };
 
 enum class JetOrder { Value = 0, Gradient = 1, Hessian = 2 };
-
-/// Of a field, those that follow the design (films::FilmTargets::numbers).
-using Numbers = std::span<const double>;
 
 class FilmTerm {
  public:
@@ -39,6 +37,8 @@ class FilmTerm {
   /// it belongs to; -2: only reported.
   int functional() const { return functional_; }
   int quantity() const { return quantity_; }  // index, or -1
+  /// Where the numbers of its field stand in films::FilmTargets::numbers.
+  int field() const { return field_; }
 
   using Corners = std::array<Vec3, 3>;
   using Vector9 = Eigen::Matrix<double, 9, 1>;
@@ -47,8 +47,10 @@ class FilmTerm {
   virtual FacetJet jet(const Element& element, const Corners& corner,
                        JetOrder order, Numbers numbers) const = 0;
 
-  /// True where its field has numbers. Its jets never throw then.
+  /// True where its field has numbers.
   virtual bool has_numbers() const { return false; }
+  /// True where jets are worth two threads.
+  virtual bool is_costly() const { return has_numbers(); }
   /// Adds factor x the derivative of motion . gradient by each number.
   virtual void add_by_numbers(const Element& /*element*/,
                               const Corners& /*corner*/,
@@ -70,6 +72,7 @@ class FilmTerm {
   std::vector<Element> elements_;
   int functional_ = -1;
   int quantity_ = -1;
+  int field_ = -1;
   friend class FilmTermBuilder;
 };
 

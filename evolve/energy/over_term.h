@@ -3,16 +3,17 @@
 
 #include <algorithm>
 
+#include "core/parallel_for.h"
 #include "evolve/energy/energy.h"
 #include "evolve/energy/facet_terms.h"
 
 namespace meniscus::energy {
 
-/// Those of a term among each quantity's; none of a term without.
+/// Those of a term's field; none of a term without.
 inline Numbers numbers_of(const FilmTerm& term,
                           const std::vector<VectorX>& numbers) {
-  const auto q = static_cast<std::size_t>(term.quantity());
-  if (!term.has_numbers() || term.quantity() < 0 || q >= numbers.size()) {
+  const auto q = static_cast<std::size_t>(term.field());
+  if (!term.has_numbers() || term.field() < 0 || q >= numbers.size()) {
     return {};
   }
   return {numbers[q].data(), static_cast<std::size_t>(numbers[q].size())};
@@ -25,7 +26,7 @@ void FilmEnergy::over_term(const FilmTerm& term, const Points& points,
   const auto jet_of_element = [&](const FilmTerm::Element& e) {
     return term.jet(e, corners_of(points, facets_[e.facet]), order, numbers);
   };
-  if (!term.has_numbers()) {  // cheap, and may throw
+  if (!term.is_costly()) {
     for (const FilmTerm::Element& e : term.elements()) {
       if (wanted(e)) {
         each(e, jet_of_element(e));
@@ -40,12 +41,11 @@ void FilmEnergy::over_term(const FilmTerm& term, const Points& points,
   for (std::size_t first = 0; first < all.size(); first += kChunk) {
     const auto count =
         static_cast<std::ptrdiff_t>(std::min(kChunk, all.size() - first));
-#pragma omp parallel for schedule(static)
-    for (std::ptrdiff_t k = 0; k < count; ++k) {
+    parallel_for(count, [&](std::ptrdiff_t k) {
       if (wanted(all[first + k])) {
         jets[k] = jet_of_element(all[first + k]);
       }
-    }
+    });
     for (std::ptrdiff_t k = 0; k < count; ++k) {
       if (wanted(all[first + k])) {
         each(all[first + k], jets[k]);

@@ -10,28 +10,18 @@ namespace meniscus::energy {
 
 namespace {
 
-double tension_at(const films::ComplexSurface& film, const Vec3& p) {
-  const auto refuse = [&](const std::string& found) {
-    throw InvalidInput(
-        fmt::format("film '{}': its tension {} at ({:.6g}, {:.6g}, {:.6g}); it "
-                    "must be above 0 wherever the film goes, max() keeps it so",
-                    film.name, found, p.x(), p.y(), p.z()));
-  };
-  double tension = 0.0;
+double tension_at(const films::ComplexSurface& film, Numbers numbers,
+                  const Vec3& p) {
   try {
-    tension =
-        film.tension_field->evaluate(std::span<const double>(p.data(), 3));
+    return value_at(*film.tension_field, numbers, p);
   } catch (const ExpressionError& error) {
-    refuse(fmt::format("has no value ({})", error.what()));
+    throw InvalidInput(
+        fmt::format("film '{}': its tension {}", film.name, error.what()));
   }
-  if (!(tension > 0.0)) {
-    refuse(fmt::format("'{}' is {:.6g}", film.tension_field->text(), tension));
-  }
-  return tension;
 }
 
 double mean_tension(const films::FilmComplex& complex, int surface,
-                    const Points& points) {
+                    Numbers numbers, const Points& points) {
   std::vector<char> on_film(points.size(), 0);
   for (std::size_t f = 0; f < complex.mesh.facets.size(); ++f) {
     if (complex.mesh.facet_label[f] == surface) {
@@ -44,7 +34,7 @@ double mean_tension(const films::FilmComplex& complex, int surface,
   int count = 0;
   for (std::size_t v = 0; v < points.size(); ++v) {
     if (on_film[v] != 0) {
-      sum += tension_at(complex.surfaces[surface], points[v]);
+      sum += tension_at(complex.surfaces[surface], numbers, points[v]);
       ++count;
     }
   }
@@ -54,23 +44,18 @@ double mean_tension(const films::FilmComplex& complex, int surface,
 }  // namespace
 
 std::vector<double> tensions_at(const films::FilmComplex& complex,
+                                const films::FilmTargets& targets,
                                 const Points& points) {
-  std::vector<double> result;
+  std::vector<double> result = targets.tension;
   for (std::size_t s = 0; s < complex.surfaces.size(); ++s) {
-    const films::ComplexSurface& surface = complex.surfaces[s];
-    result.push_back(surface.liquid && surface.tension_field
-                         ? mean_tension(complex, static_cast<int>(s), points)
-                         : surface.tension);
+    if (complex.surfaces[s].liquid && complex.surfaces[s].tension_field) {
+      const VectorX& numbers = targets.numbers[complex.quantities.size() + s];
+      result[s] = mean_tension(
+          complex, static_cast<int>(s),
+          {numbers.data(), static_cast<std::size_t>(numbers.size())}, points);
+    }
   }
   return result;
-}
-
-Expression positive_only(const Expression& field) {
-  // No value below 0, but nothing that is none as it stands: Surface Evolver
-  // refuses a division by 0 as it reads.
-  return Expression::parse(
-      fmt::format("if(({0})>0,{0},sqrt(-1-x*x))", field.text()),
-      {"x", "y", "z"});
 }
 
 }  // namespace meniscus::energy

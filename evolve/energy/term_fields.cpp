@@ -51,11 +51,4 @@ FieldJet cone_field(const Vec3& at, JetOrder /*order*/) {
   return jet;
 }
 
-FieldFunction body_field(const films::FilmQuantity& quantity) {
-  return [phi = quantity.scalar, origin = quantity.origin](const Vec3& at,
-                                                           JetOrder /*order*/) {
-    return radial_field(phi, origin, at);
-  };
-}
-
 }  // namespace meniscus::energy

@@ -22,8 +22,4 @@ FieldJet column_field(const Vec3& at, JetOrder order);
 /// F = x / 3: cones to the origin.
 FieldJet cone_field(const Vec3& at, JetOrder order);
 
-/// Its flux through a body's facets is the integral of a
-/// BodyScalarIntegral's scalar.
-FieldFunction body_field(const films::FilmQuantity& quantity);
-
 }  // namespace meniscus::energy

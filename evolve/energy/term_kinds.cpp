@@ -37,72 +37,204 @@ class FluxTerm : public FilmTerm {
   FieldFunction field_;
 };
 
+/// The size of N and its derivative by the corners.
+struct NormalSize {
+  NormalJet n;
+  double size;
+  Vec3 unit = Vec3::Zero();  // of a facet without area 0
+  FilmTerm::Vector9 grow = FilmTerm::Vector9::Zero();
+
+  explicit NormalSize(const FilmTerm::Corners& c)
+      : n(c), size(n.normal.norm()) {
+    if (size > 0.0) {
+      unit = n.normal / size;
+      for (int i = 0; i < 3; ++i) {
+        grow.segment<3>(3 * i) = n.slope[i].transpose() * unit;
+      }
+    }
+  }
+};
+
+FilmTerm::Vector9 stacked(const FilmTerm::Corners& c) {
+  FilmTerm::Vector9 all;
+  all << c[0], c[1], c[2];
+  return all;
+}
+
+/// Each corner's share of a vector.
+FilmTerm::Vector9 shared(const QuadraturePoint& q, const Vec3& v) {
+  FilmTerm::Vector9 all;
+  for (int i = 0; i < 3; ++i) {
+    all.segment<3>(3 * i) = q.weight_of[i] * v;
+  }
+  return all;
+}
+
 /// Integral of a scalar over facets.
 class ScalarTerm : public FilmTerm {
  public:
-  explicit ScalarTerm(Expression scalar) : scalar_(std::move(scalar)) {}
+  explicit ScalarTerm(PlaceField scalar) : scalar_(std::move(scalar)) {}
 
-  FacetJet jet(const Element& element, const std::array<Vec3, 3>& c,
-               JetOrder order, Numbers /*numbers*/) const override {
-    const NormalJet n(c);
-    const double size = n.normal.norm();
+  bool has_numbers() const override { return scalar_.has_numbers(); }
+  bool is_costly() const override { return !scalar_.is_constant(); }
+
+  FacetJet jet(const Element& element, const Corners& c, JetOrder order,
+               Numbers numbers) const override {
+    const NormalSize n(c);
     FacetJet sum;
-    if (!(size > 0.0)) {
+    if (!(n.size > 0.0)) {
       return sum;
-    }
-    const Vec3 unit = n.normal / size;
-    Vector9 grow;  // d|N|
-    for (int i = 0; i < 3; ++i) {
-      grow.segment<3>(3 * i) = n.slope[i].transpose() * unit;
     }
     double mean = 0.0;
     for (const QuadraturePoint& q : facet_rule()) {
       const auto& l = q.weight_of;
-      const Vec3 at = l[0] * c[0] + l[1] * c[1] + l[2] * c[2];
       PlaceJet f;
       if (order == JetOrder::Value) {  // duals cost several times as much
-        f.value = value_at(scalar_, at);
+        f.value = value_at(scalar_, numbers, q.at(c));
       } else {
-        f = jet_at(scalar_, at);
+        f = jet_at(scalar_, numbers, q.at(c));
       }
       const double w = 0.5 * element.sign * q.weight;
       mean += w * f.value;
       if (order == JetOrder::Value) {
         continue;
       }
-      Vector9 pull;
-      for (int i = 0; i < 3; ++i) {
-        pull.segment<3>(3 * i) = l[i] * f.gradient;
-      }
-      sum.gradient += w * size * pull;
+      const Vector9 pull = shared(q, f.gradient);
+      sum.gradient += w * n.size * pull;
       if (order == JetOrder::Hessian) {
-        sum.hessian += w * (pull * grow.transpose() + grow * pull.transpose());
+        sum.hessian +=
+            w * (pull * n.grow.transpose() + n.grow * pull.transpose());
         for (int i = 0; i < 3; ++i) {
           for (int j = 0; j < 3; ++j) {
             sum.hessian.block<3, 3>(3 * i, 3 * j) +=
-                w * size * l[i] * l[j] * f.hessian;
+                w * n.size * l[i] * l[j] * f.hessian;
           }
         }
       }
     }
-    sum.value = mean * size;
-    sum.gradient += mean * grow;
+    sum.value = mean * n.size;
+    sum.gradient += mean * n.grow;
     if (order == JetOrder::Hessian) {
       const Eigen::Matrix3d across =
-          (Eigen::Matrix3d::Identity() - unit * unit.transpose()) / size;
+          (Eigen::Matrix3d::Identity() - n.unit * n.unit.transpose()) / n.size;
       for (int i = 0; i < 3; ++i) {
         for (int j = 0; j < 3; ++j) {
           sum.hessian.block<3, 3>(3 * i, 3 * j) +=
-              mean * (n.slope[i].transpose() * across * n.slope[j] +
-                      NormalJet::bend(unit, i, j));
+              mean * (n.n.slope[i].transpose() * across * n.n.slope[j] +
+                      NormalJet::bend(n.unit, i, j));
         }
       }
     }
     return sum;
   }
 
+  void add_by_numbers(const Element& element, const Corners& c,
+                      const Corners& motion, double factor, Numbers numbers,
+                      VectorX& sum) const override {
+    const NormalSize n(c);
+    const double growth = n.grow.dot(stacked(motion));
+    for (const QuadraturePoint& q : facet_rule()) {
+      const double w = 0.5 * factor * element.sign * q.weight;
+      meniscus::add_by_numbers(scalar_, numbers, q.at(c), w * growth,
+                               w * n.size * q.at(motion), sum);
+    }
+  }
+
+  void add_value_by_numbers(const Element& element, const Corners& c,
+                            double factor, Numbers numbers,
+                            VectorX& sum) const override {
+    const NormalSize n(c);
+    for (const QuadraturePoint& q : facet_rule()) {
+      meniscus::add_by_numbers(scalar_, numbers, q.at(c),
+                               0.5 * factor * element.sign * q.weight * n.size,
+                               Vec3::Zero(), sum);
+    }
+  }
+
+  Vector9 gradient_rate(const Element& element, const Corners& c,
+                        Numbers numbers, Numbers rates) const override {
+    const NormalSize n(c);
+    Vector9 sum = Vector9::Zero();
+    for (const QuadraturePoint& q : facet_rule()) {
+      const PlaceJet f = rate_at(scalar_, numbers, rates, q.at(c));
+      const double w = 0.5 * element.sign * q.weight;
+      sum += w * (n.size * shared(q, f.gradient) + f.value * n.grow);
+    }
+    return sum;
+  }
+
  private:
-  Expression scalar_;
+  PlaceField scalar_;
+};
+
+/// Integral of a scalar over a body, by the flux of a radial field.
+class BodyTerm : public FilmTerm {
+ public:
+  BodyTerm(PlaceField scalar, const films::RayOrigin& origin)
+      : scalar_(std::move(scalar)), origin_(origin) {}
+
+  bool has_numbers() const override { return scalar_.has_numbers(); }
+  bool is_costly() const override { return !scalar_.is_constant(); }
+
+  FacetJet jet(const Element& element, const Corners& c, JetOrder order,
+               Numbers numbers) const override {
+    FacetJet sum;
+    add_flux(
+        facet_rule(), element.sign, c, order,
+        [&](const Vec3& at, JetOrder wanted) {
+          if (wanted == JetOrder::Value) {  // duals cost several times as much
+            FieldJet value;
+            value.bend.fill(Mat3::Zero());
+            value.value = radial_value(scalar_, numbers, origin_, at);
+            return value;
+          }
+          return radial_field(scalar_, numbers, origin_, at);
+        },
+        sum);
+    return sum;
+  }
+
+  void add_by_numbers(const Element& element, const Corners& c,
+                      const Corners& motion, double factor, Numbers numbers,
+                      VectorX& sum) const override {
+    const NormalJet n(c);
+    Vec3 turn = Vec3::Zero();  // of N
+    for (int i = 0; i < 3; ++i) {
+      turn += n.slope[i] * motion[i];
+    }
+    for (const QuadraturePoint& q : facet_rule()) {
+      const double w = 0.5 * factor * element.sign * q.weight;
+      add_radial_by_numbers(scalar_, numbers, origin_, q.at(c), w * turn,
+                            w * n.normal * q.at(motion).transpose(), sum);
+    }
+  }
+
+  void add_value_by_numbers(const Element& element, const Corners& c,
+                            double factor, Numbers numbers,
+                            VectorX& sum) const override {
+    const NormalJet n(c);
+    for (const QuadraturePoint& q : facet_rule()) {
+      const double w = 0.5 * factor * element.sign * q.weight;
+      add_radial_by_numbers(scalar_, numbers, origin_, q.at(c), w * n.normal,
+                            Eigen::Matrix3d::Zero(), sum);
+    }
+  }
+
+  Vector9 gradient_rate(const Element& element, const Corners& c,
+                        Numbers numbers, Numbers rates) const override {
+    FacetJet sum;
+    add_flux(
+        facet_rule(), element.sign, c, JetOrder::Gradient,
+        [&](const Vec3& at, JetOrder /*order*/) {
+          return radial_rate(scalar_, numbers, rates, origin_, at);
+        },
+        sum);
+    return sum.gradient;
+  }
+
+ private:
+  PlaceField scalar_;
+  films::RayOrigin origin_;
 };
 
 /// Integral of F . dl along an edge of the facet.
@@ -224,8 +356,13 @@ std::unique_ptr<FilmTerm> flux_term(FieldFunction field) {
   return std::make_unique<FluxTerm>(std::move(field));
 }
 
-std::unique_ptr<FilmTerm> scalar_term(Expression scalar) {
+std::unique_ptr<FilmTerm> scalar_term(PlaceField scalar) {
   return std::make_unique<ScalarTerm>(std::move(scalar));
+}
+
+std::unique_ptr<FilmTerm> body_term(PlaceField scalar,
+                                    const films::RayOrigin& origin) {
+  return std::make_unique<BodyTerm>(std::move(scalar), origin);
 }
 
 std::unique_ptr<FilmTerm> line_term(FieldFunction field, int points) {

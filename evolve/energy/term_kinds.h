@@ -10,8 +10,12 @@ namespace meniscus::energy {
 /// Integral of F . n over facets.
 std::unique_ptr<FilmTerm> flux_term(FieldFunction field);
 
-/// Integral of an expression of x, y, z over facets.
-std::unique_ptr<FilmTerm> scalar_term(Expression scalar);
+/// Integral of a field over facets.
+std::unique_ptr<FilmTerm> scalar_term(PlaceField scalar);
+
+/// Integral of a field over what facets enclose, or cones to `origin`.
+std::unique_ptr<FilmTerm> body_term(PlaceField scalar,
+                                    const films::RayOrigin& origin);
 
 /// Integral of F . dl along edges, with so many Gauss points.
 std::unique_ptr<FilmTerm> line_term(FieldFunction field, int points);

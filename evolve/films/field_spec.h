@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 
-#include "core/math/expression.h"
+#include "core/math/place_field.h"
 #include "core/types.h"
 
 namespace meniscus::films {
@@ -54,14 +54,16 @@ struct FieldSpec {
   double power = 2.0;  // > 0
   double core = 1.0;   // softening length, > 0 [length]
   std::variant<PerArea, PerVolume> per;
+  bool moves = false;        // strength, power or core follow the design
+  bool place_moves = false;  // the shape does
 };
 
-/// A pressure [force/length^2] that is an expression over x, y, z, on top of
-/// the body's own; positive inflates.
+/// A pressure [force/length^2] that varies, on top of the body's own; positive
+/// inflates.
 struct PressureSpec {
   std::string name;
   std::string body;  // empty: every body
-  Expression pressure;
+  PlaceField pressure;
 };
 
 }  // namespace meniscus::films

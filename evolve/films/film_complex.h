@@ -11,7 +11,7 @@
 
 #include "core/geometry/exact_shape.h"
 #include "core/geometry/surface_mesh.h"
-#include "core/math/expression.h"
+#include "core/math/place_field.h"
 #include "evolve/films/bent_wall.h"
 #include "evolve/films/film_system.h"
 #include "evolve/films/ruled_band.h"
@@ -91,7 +91,7 @@ struct ComplexSurface {
   std::string name;
   bool liquid = true;    // false: solid, its facets carry no tension
   double tension = 0.0;  // [force/length]; 0 on caps that wet no wall
-  std::optional<Expression> tension_field;  // over x, y, z; replaces tension
+  std::optional<PlaceField> tension_field;  // replaces tension
   bool refine = true;                       // false: facets stay as they are
   int constraints = -1;  // of the vertices born inside it (obstacles)
   int band = -1;         // of a ring: index into bands
@@ -128,6 +128,17 @@ struct ComplexBody {
   double volume_offset = 0.0;      // added to the measured volume [length^3]
 };
 
+/// Where the rays begin along which a body's scalar is summed.
+struct RayOrigin {
+  Vec3 at = Vec3::Zero();  // the scalar's pole, else a place amid the body
+  bool is_pole = true;     // does the scalar have a pole there?
+  int spans = 1;           // of a smooth scalar: pieces of a ray, eight places
+                           // each
+  /// So many points among the scalar's numbers, from the fourth number on, have
+  /// their mean at the pole wherever the design takes them; 0: it stays.
+  int moving_points = 0;
+};
+
 /// A named functional of the films: minimised with the energy (times modulus),
 /// held at a target like a volume, or only reported.
 struct FilmQuantity {
@@ -145,13 +156,13 @@ struct FilmQuantity {
   std::string name;
   Role role = Role::Info;
   Kind kind = Kind::VectorIntegral;
-  VectorField field;           // VectorIntegral
-  Expression scalar;           // ScalarIntegral, BodyScalarIntegral
-  Vec3 origin = Vec3::Zero();  // BodyScalarIntegral: the scalar's pole if any
-  std::vector<Pole> poles;     // BodyPoles: of the spines of `body`, in order
-  double modulus = 1.0;        // Energy
-  double target = 0.0;         // Held
-  std::vector<int> surfaces;   // empty: every facet
+  VectorField field;          // VectorIntegral
+  PlaceField scalar;          // ScalarIntegral, BodyScalarIntegral
+  RayOrigin origin;           // BodyScalarIntegral
+  std::vector<Pole> poles;    // BodyPoles: of the spines of `body`, in order
+  double modulus = 1.0;       // Energy
+  double target = 0.0;        // Held
+  std::vector<int> surfaces;  // empty: every facet
   int body = -1;
 };
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/geometry/exact_shape.h"
-#include "core/math/expression.h"
+#include "core/math/place_field.h"
 #include "evolve/curves/curve.h"
 #include "evolve/films/bent_wall.h"
 #include "evolve/films/field_spec.h"
@@ -38,8 +38,7 @@ struct FilmSpec {
   FilmKind kind = FilmKind::Branch;
   std::vector<std::string> curves;
   double tension = 1.0;  // energy per area of the whole film [force/length]
-  // Over x, y, z; replaces tension, the same for every design of a model.
-  std::optional<Expression> tension_field;
+  std::optional<PlaceField> tension_field;   // replaces tension
   std::shared_ptr<const StartFacets> start;  // of Facets
   double within = 0.0;  // its rims may be so far off their curves [length]
 };
@@ -159,7 +158,7 @@ struct FilmSystem {
   std::vector<SolidSpec> solids;
   std::vector<CapSpec> caps;
   std::vector<BodySpec> bodies;
-  // Field energies; like tension fields, the same for every design of a model.
+  // Field energies.
   std::vector<FieldSpec> fields;
   std::vector<PressureSpec> pressures;
   std::vector<SpineSpec> spines;

@@ -13,8 +13,9 @@ struct FilmTargets {
   std::vector<double> tension;      // one per surface [force/length]; caps 0
   std::vector<ComplexBody> bodies;  // volume or pressure asked; after them one
                                     // per held quantity, its target as volume
-  /// Per quantity the numbers of its field that follow the design
-  /// (evolve/energy/pole_field.h); empty: none.
+  /// The numbers of fields that follow the design: per quantity those of its
+  /// scalar or its poles (evolve/energy/pole_field.h), then per surface those
+  /// of its tension field. Empty: none.
   std::vector<VectorX> numbers;
 };
 

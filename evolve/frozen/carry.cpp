@@ -20,9 +20,9 @@ std::vector<Vec3> wall_normals_at(const films::FilmComplex& reference, int v) {
        vertex.kind == films::VertexKind::InCap) &&
       vertex.constraints >= 0) {
     for (const int wall : reference.constraint_sets[vertex.constraints]) {
-      result.push_back(energy::jet_at(reference.level_sets[wall].formula,
-                                      reference.mesh.points[v])
-                           .gradient.normalized());
+      result.push_back(
+          jet_at(reference.level_sets[wall].formula, reference.mesh.points[v])
+              .gradient.normalized());
     }
   }
   return result;

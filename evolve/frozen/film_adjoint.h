@@ -28,7 +28,7 @@ class FilmAdjoint {
     VectorX tensions;              // one per surface
     VectorX volumes;               // one per functional, 0 where none is held
     VectorX pressures;             // one per functional, 0 where it is held
-    std::vector<VectorX> numbers;  // of the fields, per quantity
+    std::vector<VectorX> numbers;  // of the fields (films::FilmTargets)
   };
   /// Lists of `response` that are not empty must fit.
   Result transpose(const FilmCovector& response) const;
@@ -39,7 +39,7 @@ class FilmAdjoint {
     VectorX tensions;   // one per surface; not read where a field is
     VectorX volumes;    // one per functional; read where one is held
     VectorX pressures;  // one per functional; read where none is held
-    std::vector<VectorX> numbers = {};  // of the fields, per quantity
+    std::vector<VectorX> numbers = {};  // of the fields (films::FilmTargets)
   };
   /// dx, one per vertex: the other way through the same system, so that
   /// transpose() of it is transpose().

@@ -61,7 +61,7 @@ void FilmModel::Impl::check_response(const FilmCovector& response) const {
   check_size("tensions", size(response.tensions), complex.surfaces.size());
   check_size("directions", response.directions.size(),
              static_cast<std::size_t>(energy->unknowns()));
-  check_size("numbers", response.numbers.size(), complex.quantities.size());
+  check_size("numbers", response.numbers.size(), targets.numbers.size());
   check_size("bends", response.bends.size(),
              static_cast<std::size_t>(energy->unknowns()));
 }
@@ -160,13 +160,24 @@ std::vector<Points> FilmModel::tangents(
   return result;
 }
 
-/// How fast the numbers of a quantity's poles change.
-VectorX FilmModel::Impl::pole_rates(const films::FilmSystem& system,
-                                    const films::FilmSystem& rates,
-                                    std::size_t quantity) const {
-  return energy::pole_rate_numbers(
-      spines::pole_rates(complex.spines, complex.quantities[quantity].body,
-                         system.spines, rates.spines));
+std::vector<VectorX> FilmModel::Impl::number_rates(
+    const films::FilmSystem& system, const films::FilmSystem& rates) const {
+  std::vector<VectorX> result;
+  for (std::size_t q = 0; q < complex.quantities.size(); ++q) {
+    result.push_back(complex.quantities[q].kind ==
+                             films::FilmQuantity::Kind::BodyPoles
+                         ? energy::pole_rate_numbers(spines::pole_rates(
+                               complex.spines, complex.quantities[q].body,
+                               system.spines, rates.spines))
+                         : scalar_numbers(rates, q));
+  }
+  for (const films::ComplexSurface& surface : complex.surfaces) {
+    const films::FilmSpec* film =
+        surface.tension_field ? find_named(rates.films, surface.name) : nullptr;
+    result.push_back(film != nullptr ? film->tension_field->numbers
+                                     : VectorX());
+  }
+  return result;
 }
 
 FilmAdjoint::Rates FilmModel::Impl::rates_of(
@@ -212,13 +223,8 @@ FilmAdjoint::Rates FilmModel::Impl::rates_of(
           wall_tension(rates, complex.surfaces[s].name);
     }
   }
-  // Poles follow their spines.
-  for (std::size_t q = 0; q < complex.quantities.size(); ++q) {
-    result.numbers.emplace_back();
-    if (complex.quantities[q].kind == films::FilmQuantity::Kind::BodyPoles) {
-      result.numbers.back() = pole_rates(system, rates, q);
-    }
-  }
+  // Fields follow the design by their numbers, poles by their spines.
+  result.numbers = number_rates(system, rates);
   for (Eigen::Index b = 0; b < bodies; ++b) {
     const films::BodySpec* body = find_named(
         rates.bodies, complex.bodies[static_cast<std::size_t>(b)].name);
@@ -254,9 +260,10 @@ double FilmModel::rate(const FilmGradient& gradient,
              wall_tension(rates, impl_->complex.surfaces[s].name);
     }
   }
+  const std::vector<VectorX> numbers = impl_->number_rates(system, rates);
   for (std::size_t q = 0; q < gradient.numbers.size(); ++q) {
     if (gradient.numbers[q].size() > 0) {
-      sum += gradient.numbers[q].dot(impl_->pole_rates(system, rates, q));
+      sum += gradient.numbers[q].dot(numbers[q]);
     }
   }
   for (std::size_t b = 0; b < impl_->complex.bodies.size(); ++b) {

@@ -21,7 +21,7 @@ struct FilmCovector {
   Points directions;    // by dx/dh, one per height (film margins have this)
   Points bends;         // by d2x/dh2, the same
   VectorX tensions;     // by the films' tensions themselves, one per label
-  std::vector<VectorX> numbers;  // by those of the fields, per quantity
+  std::vector<VectorX> numbers;  // by those of the fields (films::FilmTargets)
 };
 
 /// dJ by the points of one curve that the model's rim vertices lie on.
@@ -39,7 +39,7 @@ struct FilmGradient {
                       // and for tension fields
   VectorX volumes;    // by the volume asked for, one per body; 0 if none is
   VectorX pressures;  // by the pressure asked for; 0 where a volume is
-  std::vector<VectorX> numbers;  // by those of the fields, per quantity
+  std::vector<VectorX> numbers;  // by those of the fields (films::FilmTargets)
 };
 
 /// A response of the settled film with its derivatives, for transpose().

@@ -136,14 +136,17 @@ films::FilmTargets FilmModel::Impl::targets_of_system(
           fmt::format("the design has no film '{}', which its model has",
                       complex.surfaces[s].name));
     }
-    const std::optional<Expression>& field = complex.surfaces[s].tension_field;
+    const std::optional<PlaceField>& field = complex.surfaces[s].tension_field;
     if (film->tension_field.has_value() != field.has_value() ||
-        (field &&
-         energy::positive_only(*film->tension_field).text() != field->text())) {
+        (field && !is_same_but_numbers(*film->tension_field, *field))) {
       throw InvalidInput(fmt::format(
           "the design changes the tension field of film '{}'; it belongs to "
           "the frozen model: freeze another one",
           film->name));
+    }
+    if (field) {
+      result.numbers[complex.quantities.size() + s] =
+          film->tension_field->numbers;
     }
     if (!field) {
       result.tension[s] = film->tension;
@@ -151,9 +154,10 @@ films::FilmTargets FilmModel::Impl::targets_of_system(
   }
   check_fields(system);
   for (std::size_t q = 0; q < complex.quantities.size(); ++q) {
-    if (complex.quantities[q].kind == films::FilmQuantity::Kind::BodyPoles) {
-      result.numbers[q] = energy::pole_numbers(poles_of(system, q));
-    }
+    result.numbers[q] =
+        complex.quantities[q].kind == films::FilmQuantity::Kind::BodyPoles
+            ? energy::pole_numbers(poles_of(system, q))
+            : scalar_numbers(system, q);
   }
   for (films::ComplexBody& body : result.bodies) {
     const auto spec = std::find_if(
@@ -195,14 +199,14 @@ const films::FilmWall& FilmModel::Impl::wall_of(const films::FilmSystem& system,
   return *cap->wall;
 }
 
-/// The fields of the design are those that were frozen.
+/// The fields of the design are those that were frozen, but for their numbers.
 void FilmModel::Impl::check_fields(const films::FilmSystem& system) const {
-  std::vector<std::string> formulas;
+  std::vector<PlaceField> fields;
   for (const films::FieldSpec& field : system.fields) {
-    formulas.push_back(energy::field_expression(field).text());
+    fields.push_back(energy::place_field(field));
   }
   for (const films::PressureSpec& spec : system.pressures) {
-    formulas.push_back(spec.pressure.text());
+    fields.push_back(spec.pressure);
   }
   // Poles of spines come after them.
   const auto poles =
@@ -211,15 +215,23 @@ void FilmModel::Impl::check_fields(const films::FilmSystem& system) const {
                      return q.kind == films::FilmQuantity::Kind::BodyPoles;
                    });
   const bool same = std::equal(
-      formulas.begin(), formulas.end(), complex.quantities.begin(), poles,
-      [](const std::string& formula, const films::FilmQuantity& quantity) {
-        return formula == quantity.scalar.text();
+      fields.begin(), fields.end(), complex.quantities.begin(), poles,
+      [](const PlaceField& field, const films::FilmQuantity& quantity) {
+        return is_same_but_numbers(field, quantity.scalar);
       });
   if (!same) {
     throw InvalidInput(
         "the design changes the field energies; they belong to the frozen "
         "model: freeze another one");
   }
+}
+
+/// Those of the scalar of a quantity that is no spines', or their rates.
+VectorX FilmModel::Impl::scalar_numbers(const films::FilmSystem& system,
+                                        std::size_t quantity) {
+  const std::size_t poles = system.fields.size();
+  return quantity < poles ? energy::field_numbers(system.fields[quantity])
+                          : system.pressures[quantity - poles].pressure.numbers;
 }
 
 std::vector<films::Pole> FilmModel::Impl::poles_of(
@@ -433,7 +445,7 @@ settle::FilmState FilmModel::Impl::settle_in_parts(
       iterations += state.report.iterations;
     }
     if (!state.failure) {
-      energy::tensions_at(complex,
+      energy::tensions_at(complex, goal,
                           state.points);  // throws where one is not above 0
     }
   } catch (const ExpressionError& error) {
@@ -662,6 +674,10 @@ films::FilmComplex FilmModel::Impl::at_design(
   const films::FilmTargets goal = targets_of_system(system);
   for (std::size_t s = 0; s < at.surfaces.size(); ++s) {
     at.surfaces[s].tension = goal.tension[s];
+    if (at.surfaces[s].tension_field) {
+      at.surfaces[s].tension_field->numbers =
+          goal.numbers[at.quantities.size() + s];
+    }
   }
   for (std::size_t b = 0; b < at.bodies.size(); ++b) {
     at.bodies[b].volume = goal.bodies[b].volume;
@@ -670,6 +686,8 @@ films::FilmComplex FilmModel::Impl::at_design(
   for (std::size_t q = 0; q < at.quantities.size(); ++q) {
     if (at.quantities[q].kind == films::FilmQuantity::Kind::BodyPoles) {
       at.quantities[q].poles = poles_of(system, q);
+    } else {
+      at.quantities[q].scalar.numbers = goal.numbers[q];
     }
   }
   return at;

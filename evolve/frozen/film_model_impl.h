@@ -43,6 +43,8 @@ struct FilmModel::Impl {
   const films::FilmWall& wall_of(const films::FilmSystem& system,
                                  int surface) const;
   void check_fields(const films::FilmSystem& system) const;
+  static VectorX scalar_numbers(const films::FilmSystem& system,
+                                std::size_t quantity);
   /// The poles of one of its quantities, of the spines of a design.
   std::vector<films::Pole> poles_of(const films::FilmSystem& system,
                                     std::size_t quantity) const;
@@ -50,9 +52,9 @@ struct FilmModel::Impl {
   /// one: their arms may be slimmer now.
   static void sample_spines(const films::FilmSystem& system,
                             films::FilmComplex& complex);
-  VectorX pole_rates(const films::FilmSystem& system,
-                     const films::FilmSystem& rates,
-                     std::size_t quantity) const;
+  /// How fast the numbers of each field change (films::FilmTargets::numbers).
+  std::vector<VectorX> number_rates(const films::FilmSystem& system,
+                                    const films::FilmSystem& rates) const;
   std::vector<curves::Curve> curves_of_system(
       const films::FilmSystem& system) const;
   void find_reference(const films::FilmSystem& initial,

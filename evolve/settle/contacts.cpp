@@ -50,8 +50,8 @@ int update_contacts(films::FilmComplex& complex,
     Eigen::MatrixX3d rows(static_cast<Eigen::Index>(set.size()), 3);
     std::vector<double> value;
     for (std::size_t i = 0; i < set.size(); ++i) {
-      const energy::PlaceJet jet = energy::jet_at(
-          complex.level_sets[set[i]].formula, complex.mesh.points[v]);
+      const PlaceJet jet =
+          jet_at(complex.level_sets[set[i]].formula, complex.mesh.points[v]);
       rows.row(static_cast<Eigen::Index>(i)) = jet.gradient;
       value.push_back(jet.value / std::max(1e-300, jet.gradient.norm()));
     }

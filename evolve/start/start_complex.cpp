@@ -13,6 +13,7 @@
 #include "core/error.h"
 #include "evolve/curves/curve_cut.h"
 #include "evolve/energy/fields.h"
+#include "evolve/energy/film_terms.h"
 #include "evolve/energy/tension_field.h"
 #include "evolve/films/body_sides.h"
 #include "evolve/films/edge_marks.h"
@@ -92,13 +93,11 @@ class StartBuilder {
     add_fields();
     std::move(poles.begin(), poles.end(),
               std::back_inserter(result_.quantities));
-    const std::vector<double> tensions =
-        energy::tensions_at(result_, result_.mesh.points);
+    const std::vector<double> tensions = energy::tensions_at(
+        result_, energy::targets_of(result_), result_.mesh.points);
     for (std::size_t s = 0; s < tensions.size(); ++s) {
-      films::ComplexSurface& surface = result_.surfaces[s];
-      surface.tension = tensions[s];
-      if (surface.tension_field) {
-        surface.tension_field = energy::positive_only(*surface.tension_field);
+      if (result_.surfaces[s].tension_field) {
+        result_.surfaces[s].tension = tensions[s];
       }
     }
     return std::move(result_);
@@ -253,6 +252,9 @@ class StartBuilder {
   void add_film(const films::FilmSpec& film) {
     const int label =
         add_surface({film.name, true, film.tension, film.tension_field});
+    if (film.tension_field) {
+      result_.surfaces[label].tension_field->positive = true;
+    }
     std::set<std::string> used;
     for (const std::string& name : film.curves) {
       if (!used.insert(name).second) {

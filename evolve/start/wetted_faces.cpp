@@ -291,8 +291,8 @@ FacePlane plane_of(const films::FilmComplex& complex,
                    const films::ComplexSurface& face) {
   const films::LevelSet& level =
       complex.level_sets[complex.constraint_sets[face.constraints].front()];
-  const double value = energy::value_at(level.formula, Vec3::Zero());
-  const Vec3 n = energy::jet_at(level.formula, Vec3::Zero()).gradient;
+  const double value = value_at(level.formula, Vec3::Zero());
+  const Vec3 n = jet_at(level.formula, Vec3::Zero()).gradient;
   return {-value / n.squaredNorm() * n, face.wetted->normal, face.constraints};
 }
 
@@ -409,8 +409,8 @@ Vec3 middle_of(const films::FilmComplex& complex,
   Eigen::Index row = 0;
   for (const int level : others) {
     const Expression& formula = complex.level_sets[level].formula;
-    normals.row(row) = energy::jet_at(formula, Vec3::Zero()).gradient;
-    offs[row++] = -energy::value_at(formula, Vec3::Zero());
+    normals.row(row) = jet_at(formula, Vec3::Zero()).gradient;
+    offs[row++] = -value_at(formula, Vec3::Zero());
   }
   const Vec3 middle = least_norm(normals, offs);
   const double off = (normals * middle - offs).cwiseAbs().maxCoeff();

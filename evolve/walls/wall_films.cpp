@@ -67,8 +67,8 @@ WallFilms wall_films(const frozen::FilmModel& model,
     }
     films.region.push_back(walls[w].region);
     const Vec3& p = points.front();
-    films.asked.push_back(walls[w].number.value_or(walls[w].thickness.evaluate(
-        std::array<double, 3>{p.x(), p.y(), p.z()})));
+    const PlaceField& thickness = walls[w].thickness;
+    films.asked.push_back(value_at(thickness, thickness.own(), p));
   }
   for (std::size_t f = 0; f < all.facets.size(); ++f) {
     const int label = mesh.label_of(all.labels[all.facet_label[f]]);

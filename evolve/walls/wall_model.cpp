@@ -32,6 +32,15 @@ WallModel::WallModel(const WallFilms& films, std::vector<WallSpec> walls,
       reference_film_(films.mesh.points),
       topology_(wall_topology(films)),
       reference_(wall_reference(topology_, films, specs_, places)) {
+  std::vector<std::set<int>> vertices(specs_.size());
+  for (std::size_t p = 0; p < reference_.moves.size(); ++p) {
+    for (const WallMove& move : reference_.moves[p]) {
+      vertices[move.wall].insert(topology_.points[p].vertex);
+    }
+  }
+  for (const std::set<int>& of_wall : vertices) {
+    vertices_of_.emplace_back(of_wall.begin(), of_wall.end());
+  }
   freeze_moves();
   std::vector<int> corner;
   SurfaceMesh coarse = topology_.coarse;
@@ -126,45 +135,49 @@ Points WallModel::unit_normals(const Points& film) const {
   return normals;
 }
 
-VectorX WallModel::thickness(const std::vector<WallSpec>& walls) const {
-  VectorX result(static_cast<Eigen::Index>(specs_.size()));
+std::vector<VectorX> WallModel::numbers(
+    const std::vector<WallSpec>& walls) const {
+  std::vector<VectorX> result;
   for (std::size_t w = 0; w < specs_.size(); ++w) {
     if (walls.size() != specs_.size() ||
-        walls[w].number.has_value() != specs_[w].number.has_value() ||
+        !is_same_but_numbers(walls[w].thickness, specs_[w].thickness) ||
         walls[w].name != specs_[w].name) {
       throw InvalidInput("the design's walls are not those of its model");
     }
-    const double number = walls[w].number.value_or(1.0);
-    if (!(number > 0.0) || !std::isfinite(number)) {
-      throw InvalidInput(
-          fmt::format("walls.{}: the thickness must be above 0, found {}",
-                      walls[w].name, number));
-    }
-    result[static_cast<Eigen::Index>(w)] = number;
+    result.push_back(walls[w].thickness.numbers);
   }
   return result;
 }
 
-VectorX WallModel::ratios(const VectorX& thickness) const {
-  VectorX ratio = VectorX::Ones(thickness.size());
+std::vector<VectorX> WallModel::ratios(
+    const std::vector<VectorX>& numbers) const {
+  const auto count = static_cast<Eigen::Index>(reference_film_.size());
+  std::vector<VectorX> result(specs_.size(), VectorX::Ones(count));
   for (std::size_t w = 0; w < specs_.size(); ++w) {
-    if (specs_[w].number) {
-      const auto k = static_cast<Eigen::Index>(w);
-      ratio[k] = thickness[k] / *specs_[w].number;
+    const PlaceField& field = specs_[w].thickness;
+    const Numbers now(numbers[w].data(),
+                      static_cast<std::size_t>(numbers[w].size()));
+    if (!field.has_numbers() || numbers[w] == field.numbers) {
+      continue;
+    }
+    for (const int v : vertices_of_[w]) {
+      const Vec3& at = reference_film_[v];
+      result[w][v] =
+          thickness_at(specs_[w], now, at) / value_at(field, field.own(), at);
     }
   }
-  return ratio;
+  return result;
 }
 
 Points WallModel::points_of(const Points& film,
-                            const VectorX& thickness) const {
+                            const std::vector<VectorX>& numbers) const {
   if (film.size() != reference_film_.size()) {
     throw InvalidInput(
         fmt::format("walls: a film of {} points is not that of "
                     "the model, which has {}",
                     film.size(), reference_film_.size()));
   }
-  const VectorX ratio = ratios(thickness);
+  const std::vector<VectorX> ratio = ratios(numbers);
   const Points normals = unit_normals(film);
   Points result(topology_.points.size(), Vec3::Zero());
   for (std::size_t p = 0; p < result.size(); ++p) {
@@ -174,13 +187,13 @@ Points WallModel::points_of(const Points& film,
     }
     Vec3 by = Vec3::Zero();
     for (const Share& share : follow_[p].normals) {
-      by += ratio[share.wall] * share.weight * normals[share.at];
+      by += ratio[share.wall][v] * share.weight * normals[share.at];
     }
     for (const Share& share : follow_[p].edges) {
-      by += ratio[share.wall] * share.weight * (film[share.at] - film[v]);
+      by += ratio[share.wall][v] * share.weight * (film[share.at] - film[v]);
     }
     for (const WallMove& rest : follow_[p].rest) {
-      by += ratio[rest.wall] * rest.by;
+      by += ratio[rest.wall][v] * rest.by;
     }
     result[p] = film[v] + by;
   }
@@ -193,14 +206,14 @@ Points WallModel::points_of(const Points& film,
 }
 
 QuadraticSurface WallModel::surface(const Points& film,
-                                    const VectorX& thickness) const {
-  return nodes_.at(points_of(film, thickness));
+                                    const std::vector<VectorX>& numbers) const {
+  return nodes_.at(points_of(film, numbers));
 }
 
 SurfaceMesh WallModel::fine(const Points& film,
-                            const VectorX& thickness) const {
+                            const std::vector<VectorX>& numbers) const {
   SurfaceMesh mesh = topology_.fine;
-  mesh.points = points_of(film, thickness);
+  mesh.points = points_of(film, numbers);
   return mesh;
 }
 
@@ -210,7 +223,8 @@ void WallModel::split_facets(const std::vector<char>& marked) {
                              std::vector<char>(topology_.points.size(), 0));
 }
 
-WallGradient WallModel::transpose(const Points& film, const VectorX& thickness,
+WallGradient WallModel::transpose(const Points& film,
+                                  const std::vector<VectorX>& numbers,
                                   const Points& by_corners,
                                   const Points& by_mid_sides) const {
   Points by =
@@ -224,11 +238,15 @@ WallGradient WallModel::transpose(const Points& film, const VectorX& thickness,
   // Backwards through x + d with d = sum c_f n_f + sum b_j (x_j - x) + e, each
   // part times its wall's t / t0: to the normals, the film's points and the
   // ratios.
-  const VectorX ratio = ratios(thickness);
+  const std::vector<VectorX> ratio = ratios(numbers);
   const Points normals = unit_normals(film);
   Points by_normals(normals.size(), Vec3::Zero());
   WallGradient result{.film = Points(film.size(), Vec3::Zero()),
-                      .thickness = VectorX::Zero(thickness.size())};
+                      .thickness = {}};
+  std::vector<VectorX> by_ratio;
+  for (const VectorX& of_wall : ratio) {
+    by_ratio.push_back(VectorX::Zero(of_wall.size()));
+  }
   for (std::size_t p = 0; p < by.size(); ++p) {
     const int v = topology_.points[p].vertex;
     if (v < 0) {
@@ -236,25 +254,35 @@ WallGradient WallModel::transpose(const Points& film, const VectorX& thickness,
     }
     result.film[v] += by[p];
     for (const Share& share : follow_[p].normals) {
-      by_normals[share.at] += ratio[share.wall] * share.weight * by[p];
-      result.thickness[share.wall] +=
-          share.weight * normals[share.at].dot(by[p]);
+      by_normals[share.at] += ratio[share.wall][v] * share.weight * by[p];
+      by_ratio[share.wall][v] += share.weight * normals[share.at].dot(by[p]);
     }
     for (const Share& share : follow_[p].edges) {
-      const Vec3 part = ratio[share.wall] * share.weight * by[p];
+      const Vec3 part = ratio[share.wall][v] * share.weight * by[p];
       result.film[share.at] += part;
       result.film[v] -= part;
-      result.thickness[share.wall] +=
+      by_ratio[share.wall][v] +=
           share.weight * (film[share.at] - film[v]).dot(by[p]);
     }
     for (const WallMove& rest : follow_[p].rest) {
-      result.thickness[rest.wall] += rest.by.dot(by[p]);
+      by_ratio[rest.wall][v] += rest.by.dot(by[p]);
     }
   }
   // The ratio is t / t0, hence dJ/dt = dJ/dratio / t0.
   for (std::size_t w = 0; w < specs_.size(); ++w) {
-    double& rate = result.thickness[static_cast<Eigen::Index>(w)];
-    rate = specs_[w].number ? rate / *specs_[w].number : 0.0;
+    const PlaceField& field = specs_[w].thickness;
+    const Numbers now(numbers[w].data(),
+                      static_cast<std::size_t>(numbers[w].size()));
+    VectorX& by_numbers =
+        result.thickness.emplace_back(VectorX::Zero(numbers[w].size()));
+    for (const int v : vertices_of_[w]) {
+      const Vec3& at = reference_film_[v];
+      if (field.has_numbers() && by_ratio[w][v] != 0.0) {
+        add_by_numbers(field, now, at,
+                       by_ratio[w][v] / value_at(field, field.own(), at),
+                       Vec3::Zero(), by_numbers);
+      }
+    }
   }
   // Unit normals depend on the film's points: dJ/da = (I - n n') dJ/dn / |a|.
   through_normals(film, normals, by_normals, result.film);
@@ -282,7 +310,7 @@ void WallModel::through_normals(const Points& film, const Points& normals,
 
 /// One closed wall per region, measured and checked.
 void WallModel::report() {
-  const SurfaceMesh all = fine(reference_film_, thickness(specs_));
+  const SurfaceMesh all = fine(reference_film_, numbers(specs_));
   std::vector<char> in_front(topology_.points.size(), 0);
   for (const WallFacet& facet : topology_.facets) {
     for (const int p : facet.front) {

@@ -2,14 +2,15 @@
 /// junctions are found once, and the walls of every other design follow their
 /// film smoothly.
 ///
-///   y_k(p) = x_v(p) + sum_w t_w(p) / t_w(0) *
+///   y_k(p) = x_v(p) + sum_w t_wv(p) / t_wv(0) *
 ///            ( sum_f c_kf n_f(p) + sum_j b_kj (x_j(p) - x_v(p)) + e_k )
 ///
-/// y_k: a point of a wall over film vertex v; w: the walls that meet there, t_w
-/// their thickness where it is a number; n_f: unit normals of the facets about
-/// v that look into its sector (wall_topology.h), x_j the vertices next to v.
-/// c, b and the tiny rest e, one set per w, are constants that give the offset
-/// found at the reference film exactly, so that the wall turns with its film.
+/// y_k: a point of a wall over film vertex v; w: the walls that meet there,
+/// t_wv their thickness where v was on that film; n_f: unit normals of the
+/// facets about v that look into its sector (wall_topology.h), x_j the vertices
+/// next to v. c, b and the tiny rest e, one set per w, are constants that give
+/// the offset found at the reference film exactly, so that the wall turns with
+/// its film.
 #pragma once
 
 #include <set>
@@ -28,8 +29,8 @@ namespace meniscus::walls {
 
 /// A response's derivatives by what walls are made of.
 struct WallGradient {
-  Points film;        // by the film's points
-  VectorX thickness;  // by each wall's number; 0 where it has none
+  Points film;                     // by the film's points
+  std::vector<VectorX> thickness;  // by the numbers of each wall's
 };
 
 class WallModel {
@@ -54,21 +55,26 @@ class WallModel {
   /// Everywhere.
   const std::vector<double>& safe() const { return reference_.safe_at; }
 
-  /// Thickness numbers of `walls`, this model's at another design.
-  VectorX thickness(const std::vector<WallSpec>& walls) const;
+  /// The numbers of the thickness of `walls`, this model's at another design;
+  /// of rates theirs.
+  std::vector<VectorX> numbers(const std::vector<WallSpec>& walls) const;
 
   /// The closed walls for meshing: corners at the meshed resolution, mid-sides
-  /// from the finer film. `thickness`: one per wall, see above.
-  QuadraticSurface surface(const Points& film, const VectorX& thickness) const;
+  /// from the finer film. `numbers`: see above. Throws InvalidInput where a
+  /// thickness is not above 0.
+  QuadraticSurface surface(const Points& film,
+                           const std::vector<VectorX>& numbers) const;
 
   /// The same at the film's own resolution.
-  SurfaceMesh fine(const Points& film, const VectorX& thickness) const;
+  SurfaceMesh fine(const Points& film,
+                   const std::vector<VectorX>& numbers) const;
 
   /// As FilmModel::split_facets().
   void split_facets(const std::vector<char>& marked);
 
-  /// surface() transposed at `film` and `thickness`.
-  WallGradient transpose(const Points& film, const VectorX& thickness,
+  /// surface() transposed at `film` and `numbers`.
+  WallGradient transpose(const Points& film,
+                         const std::vector<VectorX>& numbers,
                          const Points& by_corners,
                          const Points& by_mid_sides) const;
 
@@ -95,12 +101,15 @@ class WallModel {
   void through_normals(const Points& film, const Points& normals,
                        const Points& by_normals, Points& by_film) const;
   void report();
-  VectorX ratios(const VectorX& thickness) const;
-  Points points_of(const Points& film, const VectorX& thickness) const;
+  /// Per wall, per film vertex: t / t0.
+  std::vector<VectorX> ratios(const std::vector<VectorX>& numbers) const;
+  Points points_of(const Points& film,
+                   const std::vector<VectorX>& numbers) const;
   Points unit_normals(const Points& film) const;
 
   std::vector<WallSpec> specs_;
   Points reference_film_;
+  std::vector<std::vector<int>> vertices_of_;  // of the film, per wall
   WallTopology topology_;
   WallReference reference_;
   std::vector<Follow> follow_;  // per wall point

@@ -39,29 +39,37 @@ class Asked {
 
  private:
   double evaluate(int wall, int v) const {
-    const Expression& thickness = walls_[wall].thickness;
-    const Vec3& p = points_[v];
-    double t = 0.0;
-    try {
-      t = thickness.evaluate(std::array<double, 3>{p.x(), p.y(), p.z()});
-    } catch (const ExpressionError& error) {
-      throw InvalidInput(fmt::format("walls.{}: thickness \"{}\" at {}: {}",
-                                     walls_[wall].name, thickness.text(),
-                                     text_of(p), error.what()));
-    }
-    if (!(t > 0.0) || !std::isfinite(t)) {
-      throw InvalidInput(fmt::format(
-          "walls.{}: thickness \"{}\" is {} at {}; it must be above 0 and "
-          "finite on the whole film",
-          walls_[wall].name, thickness.text(), t, text_of(p)));
-    }
-    return t;
+    return thickness_at(walls_[wall], walls_[wall].thickness.own(), points_[v]);
   }
 
   const Points& points_;
   const std::vector<WallSpec>& walls_;
   std::vector<std::map<int, double>> known_;
 };
+
+}  // namespace
+
+double thickness_at(const WallSpec& wall, Numbers numbers, const Vec3& p) {
+  const std::string& text = wall.thickness.text.empty()
+                                ? wall.thickness.formula.text()
+                                : wall.thickness.text;
+  double t = 0.0;
+  try {
+    t = value_at(wall.thickness, numbers, p);
+  } catch (const ExpressionError& error) {
+    throw InvalidInput(fmt::format("walls.{}: thickness \"{}\": {}", wall.name,
+                                   text, error.what()));
+  }
+  if (!(t > 0.0) || !std::isfinite(t)) {
+    throw InvalidInput(fmt::format(
+        "walls.{}: thickness \"{}\" is {} at {}; it must be above 0 and finite "
+        "on the whole film",
+        wall.name, text, t, text_of(p)));
+  }
+  return t;
+}
+
+namespace {
 
 class Reference {
  public:

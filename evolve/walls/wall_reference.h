@@ -15,6 +15,10 @@ struct WallMove {
   Vec3 by = Vec3::Zero();  // [length]
 };
 
+/// What a wall asks for at a place [length]. Throws InvalidInput, naming wall
+/// and place, where that is not above 0.
+double thickness_at(const WallSpec& wall, Numbers numbers, const Vec3& at);
+
 /// Where safe thicknesses are looked for.
 enum class SafePlaces { Worst, Everywhere };
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/math/expression.h"
+#include "core/math/place_field.h"
 #include "evolve/walls/thicken.h"
 
 namespace meniscus::walls {
@@ -14,13 +14,12 @@ namespace meniscus::walls {
 struct WallSpec {
   std::string name;
   std::vector<std::string> films;
-  Expression thickness;  // over x, y, z; above 0 on the films [length]
+  /// Above 0 on the films [length]. Of another design the field at its numbers
+  /// and where the frozen film was: the film takes its thickness along.
+  PlaceField thickness;
   WallSide side = WallSide::Both;
   /// Radius at junctions [length]; half the thickness when left out.
   std::optional<double> fillet;
-  /// The thickness where it is the same everywhere: it may follow the design
-  /// [length]. Of rates: its derivative.
-  std::optional<double> number;
   /// The body that the wall is part of; walls that meet are of one.
   int region = 0;
 };

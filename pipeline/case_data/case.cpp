@@ -42,15 +42,14 @@ constexpr int kPlacesOnCurve = 16;
 /// film: what can be known before there is one.
 void check_on_curves(const Case& input, const films::FilmSystem& system,
                      const std::vector<std::string>& curves,
-                     const PlaceQuantity& from, const Expression& expression,
+                     const PlaceQuantity& from, const PlaceField& field,
                      const CaseValues& values) {
-  const auto add_problem = [&](const std::string& found, const Vec3& at,
+  const auto add_problem = [&](const std::string& found,
                                const std::string& curve) {
     values.problems().push_back(fmt::format(
-        "{}: {} {} at ({:.4g}, {:.4g}, {:.4g}) on curve '{}'{}; it must be "
-        "above 0 on the whole film",
-        place(input, from.quantity.line), from.quantity.key, found, at.x(),
-        at.y(), at.z(), curve, values.where(from.quantity)));
+        "{}: {} {} on curve '{}'{}; it must be above 0 on the whole film",
+        place(input, from.quantity.line), from.quantity.key, found, curve,
+        values.where(from.quantity)));
   };
   for (const curves::Curve& curve : system.curves) {
     if (std::find(curves.begin(), curves.end(), curve.name) == curves.end()) {
@@ -60,13 +59,15 @@ void check_on_curves(const Case& input, const films::FilmSystem& system,
       const Vec3 at = curves::point_at(curve.shape,
                                        static_cast<double>(k) / kPlacesOnCurve);
       try {
-        const double value =
-            expression.evaluate(std::span<const double>(at.data(), 3));
+        const double value = value_at(field, field.own(), at);
         if (!(value > 0.0)) {
-          return add_problem(fmt::format("is {:.4g}", value), at, curve.name);
+          return add_problem(
+              fmt::format("is {:.4g} at ({:.4g}, {:.4g}, {:.4g})", value,
+                          at.x(), at.y(), at.z()),
+              curve.name);
         }
       } catch (const ExpressionError& error) {
-        return add_problem(fmt::format("has no value ({})", error.what()), at,
+        return add_problem(fmt::format("has no value ({})", error.what()),
                            curve.name);
       }
     }
@@ -93,16 +94,31 @@ films::PoleShape pole_of(const FieldEntry& field, const CaseValues& values) {
   return films::PointPole{values.at(field.at)};
 }
 
+/// Which of its numbers follow the design.
+void mark_moves(const FieldEntry& field, const CaseValues& values,
+                films::FieldSpec& spec) {
+  const auto follows = [&](const auto& of) {
+    return values.follows_design(of);
+  };
+  spec.moves =
+      follows(field.strength) || follows(field.power) || follows(field.core);
+  spec.place_moves =
+      follows(field.at) || follows(field.normal) || follows(field.from) ||
+      follows(field.to) ||
+      std::any_of(field.points.begin(), field.points.end(), follows);
+}
+
 void add_field(const Case& input, const FieldEntry& field,
                const CaseValues& values, films::FilmSystem& system) {
   if (field.kind == FieldKind::Pressure) {
     system.pressures.push_back(
-        {field.name, field.body, values.of_place(field.pressure)});
+        {field.name, field.body, values.place_field(field.pressure)});
     return;
   }
   const std::size_t before = values.problems().size();
   const bool checked = !values.are_rates();
   films::FieldSpec spec{.name = field.name, .shape = pole_of(field, values)};
+  mark_moves(field, values, spec);
   spec.strength = values.at(field.strength);
   spec.power = values.positive(field.power);
   spec.core = values.positive(field.core);
@@ -125,7 +141,7 @@ void add_field(const Case& input, const FieldEntry& field,
   }
   if (checked && values.problems().size() == before) {
     try {
-      energy::field_expression(spec);
+      energy::place_field(spec);
     } catch (const InvalidInput& error) {
       values.problems().push_back(
           fmt::format("{}: {}", place(input, field.line), error.what()));
@@ -189,7 +205,7 @@ films::FilmSystem films_of(const Case& input, const CaseValues& values) {
     system.films.push_back(film.spec);
     films::FilmSpec& spec = system.films.back();
     if (film.tension.of_place) {
-      spec.tension_field = values.of_place(film.tension);
+      spec.tension_field = values.place_field(film.tension);
     } else {
       spec.tension = values.positive(film.tension.quantity);
     }
@@ -271,14 +287,10 @@ Inputs inputs_of(const Case& input, const CaseValues& values) {
   for (const WallEntry& wall : input.walls) {
     walls::WallSpec spec{.name = wall.name,
                          .films = wall.films,
-                         .thickness = values.of_place(wall.thickness),
+                         .thickness = values.place_field(wall.thickness),
                          .side = wall.side,
                          .fillet = wall.fillet,
-                         .number = std::nullopt,
                          .region = wall.region};
-    if (!wall.thickness.of_place) {
-      spec.number = values.at(wall.thickness.quantity);
-    }
     result.walls.push_back(std::move(spec));
   }
   for (const BodyEntry& body : solid_bodies(input)) {

@@ -50,6 +50,7 @@ struct Case {
   std::vector<BodyEntry> bodies;
   std::vector<FilletEntry> fillets;
   std::vector<WallEntry> walls;
+  std::vector<ShapeEntry> shapes;
   std::vector<FieldEntry> fields;
   std::vector<SpineEntry> spines;
   std::vector<MaterialEntry> materials;

@@ -474,6 +474,21 @@ void check_arms(const Case& input, const EvaluatedCase& inputs,
   }
 }
 
+/// Does a shape of fields take them all?
+bool are_coefficients(const Case& input, const DesignRow& row) {
+  const auto takes = [&](const ShapeEntry& shape) {
+    std::set<int> used;
+    for (const Quantity& coefficient : shape.coefficients) {
+      const std::vector<int> names = coefficient.expression.names_used();
+      used.insert(names.begin(), names.end());
+    }
+    const auto first = static_cast<int>(row.first);
+    const auto last = static_cast<int>(row.first + row.count) - 1;
+    return used.count(first) > 0 && used.count(last) > 0;
+  };
+  return std::any_of(input.shapes.begin(), input.shapes.end(), takes);
+}
+
 /// The case's numbers at the initial design and, one variable at a time, at
 /// the ends of the bounds.
 void check_numbers(const Case& input, CaseProblems& problems) {
@@ -516,6 +531,20 @@ void check_numbers(const Case& input, CaseProblems& problems) {
     for (std::size_t k = row.first;
          k < row.first + row.count && problems.size() == before; ++k) {
       check_ends(input.design[k], k);
+    }
+    // Of a shape no one coefficient says it: the field lies between them all.
+    for (const bool upper : {false, true}) {
+      if (problems.size() > before || !are_coefficients(input, row)) {
+        break;
+      }
+      VectorX design = initial;
+      for (std::size_t k = row.first; k < row.first + row.count; ++k) {
+        design[static_cast<Eigen::Index>(k)] =
+            upper ? input.design[k].upper : input.design[k].lower;
+      }
+      at(design,
+         fmt::format(" (with all of '{}' at the {} ends of their bounds)",
+                     row.name, upper ? "upper" : "lower"));
     }
   }
 }

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -11,6 +12,7 @@
 
 #include "core/math/expression.h"
 #include "core/math/measure.h"
+#include "core/math/place_shape.h"
 #include "core/math/worst_direction.h"
 #include "evolve/films/film_system.h"
 #include "evolve/scan/scan.h"
@@ -35,10 +37,10 @@ struct Quantity {
 using QuantityVector = std::array<Quantity, 3>;
 
 /// A number, or an expression that knows the coordinates x, y, z after the
-/// case's names.
+/// case's names, and after these, where it is of a film's field, the shapes.
 struct PlaceQuantity {
   Quantity quantity;
-  bool of_place = false;  // x, y or z appear
+  bool of_place = false;  // x, y, z or a shape appear
 };
 
 struct DesignVariable {
@@ -226,6 +228,14 @@ struct FilletEntry {
   std::string name;
   std::vector<std::string> curves;
   Quantity radius;
+  SourceLine line = 0;
+};
+
+/// A shape of fields and its coefficients: one per function.
+struct ShapeEntry {
+  std::string name;
+  std::shared_ptr<const PlaceShape> shape;
+  std::vector<Quantity> coefficients;
   SourceLine line = 0;
 };
 

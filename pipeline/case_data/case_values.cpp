@@ -13,6 +13,28 @@ namespace meniscus::case_data {
 
 namespace {
 
+/// The name itself, or of an element "t[2,3]" another, unlike all of the case
+/// and all of `taken`: no index of it is to be checked again.
+std::string plain_name(const Case& input, const std::string& name,
+                       const std::vector<std::string>& names,
+                       const std::vector<std::string>& taken) {
+  if (name.find('[') == std::string::npos) {
+    return name;
+  }
+  std::string plain = fmt::format("n{}", taken.size());
+  const auto is_among = [&](const std::vector<std::string>& all) {
+    return std::find(all.begin(), all.end(), plain) != all.end();
+  };
+  const auto is_shape = [&](const ShapeEntry& entry) {
+    return entry.name == plain;
+  };
+  while (is_among(names) || is_among(taken) ||
+         std::any_of(input.shapes.begin(), input.shapes.end(), is_shape)) {
+    plain += '_';
+  }
+  return plain;
+}
+
 double rate_of(const Dual& value) {
   return value.is_constant() ? 0.0 : value.gradient[0];
 }
@@ -35,10 +57,29 @@ CaseValues::CaseValues(const Case& input, const VectorX& design,
   }
   values_.assign(design.begin(), design.end());
   values_.resize(names_.size(), 0.0);
+  parameter_follows_.resize(input.parameters.size(), 0);
   for (const int k : input.parameter_order) {
-    values_[input.design.size() + static_cast<std::size_t>(k)] =
-        at(input.parameters[static_cast<std::size_t>(k)].value);
+    const auto i = static_cast<std::size_t>(k);
+    values_[input.design.size() + i] = at(input.parameters[i].value);
+    parameter_follows_[i] = follows_design(input.parameters[i].value) ? 1 : 0;
   }
+}
+
+bool CaseValues::follows(int name) const {
+  const auto k = static_cast<std::size_t>(name);
+  const std::size_t design = input_.design.size();
+  return k < design || (k < names_.size() && parameter_follows_[k - design]);
+}
+
+bool CaseValues::follows_design(const Quantity& quantity) const {
+  const std::vector<int> used = quantity.expression.names_used();
+  return std::any_of(used.begin(), used.end(),
+                     [this](int name) { return follows(name); });
+}
+
+bool CaseValues::follows_design(const QuantityVector& vector) const {
+  return std::any_of(vector.begin(), vector.end(),
+                     [this](const Quantity& q) { return follows_design(q); });
 }
 
 CaseValues::CaseValues(const Case& input, const VectorX& design,
@@ -98,6 +139,55 @@ Expression CaseValues::of_place(const PlaceQuantity& place_quantity) const {
                                     quantity.key, error.what()));
     return Expression();
   }
+}
+
+PlaceField CaseValues::place_field(const PlaceQuantity& place_quantity) const {
+  const Expression& from = place_quantity.quantity.expression;
+  std::vector<std::string> before;  // names in its text, and what takes
+  std::vector<std::string> after;   // their places
+  PlaceField result;
+  result.text = from.text();
+  std::vector<double> numbers;
+  std::vector<double> coefficients;
+  std::vector<std::string> all = {"x", "y", "z"};
+  const std::size_t first_shape = names_.size() + 3;
+  for (const int name : from.names_used()) {
+    const auto k = static_cast<std::size_t>(name);
+    if (k >= first_shape) {
+      const ShapeEntry& entry = input_.shapes[k - first_shape];
+      result.shapes.push_back(entry.shape);
+      for (const Quantity& coefficient : entry.coefficients) {
+        coefficients.push_back(at(coefficient));
+      }
+    } else if (follows(name)) {
+      before.push_back(names_[k]);
+      after.push_back(plain_name(input_, names_[k], names_, after));
+      result.names.push_back(after.back());
+      numbers.push_back(are_rates() ? rate_of(duals_[k]) : values_[k]);
+    } else if (k < names_.size()) {
+      before.push_back(names_[k]);
+      after.push_back(fmt::format("({})", values_[k]));
+    }
+  }
+  all.insert(all.end(), result.names.begin(), result.names.end());
+  for (const int name : from.names_used()) {
+    if (static_cast<std::size_t>(name) >= first_shape) {
+      all.push_back(
+          input_.shapes[static_cast<std::size_t>(name) - first_shape].name);
+    }
+  }
+  numbers.insert(numbers.end(), coefficients.begin(), coefficients.end());
+  result.numbers =
+      Eigen::Map<const VectorX>(numbers.data(), std::ssize(numbers));
+  try {
+    result.formula =
+        Expression::parse(with_texts(from.text(), before, after), all);
+  } catch (const ExpressionError& error) {
+    problems_.push_back(fmt::format("{}: {}: {}",
+                                    place(input_, place_quantity.quantity.line),
+                                    place_quantity.quantity.key, error.what()));
+  }
+  return result;
 }
 
 loads::NumberOfPlace CaseValues::field(

@@ -54,8 +54,14 @@ class CaseValues {
   }
 
   /// Over x, y, z alone: the values stand in its text, to the last bit. No
-  /// rates: those that films are frozen with do not change.
+  /// rates.
   Expression of_place(const PlaceQuantity& quantity) const;
+  /// Over x, y, z and the names that some design variable moves; its numbers
+  /// are their values, or their rates.
+  PlaceField place_field(const PlaceQuantity& quantity) const;
+  /// Does any design variable move it?
+  bool follows_design(const Quantity& quantity) const;
+  bool follows_design(const QuantityVector& vector) const;
 
   /// An expression over the case's names and `more` values after them; its
   /// derivative, when these change at `more_rates`. Quiet NaN, and a problem
@@ -83,6 +89,7 @@ class CaseValues {
 
  private:
   double evaluate(const Quantity& quantity) const;
+  bool follows(int name) const;
   double nothing(const Quantity& quantity, const ExpressionError& error) const;
   void add_problem(const Quantity& quantity, double value,
                    const char* must_be) const;
@@ -99,7 +106,8 @@ class CaseValues {
   std::vector<std::string>& problems_;
   std::vector<std::string> names_;
   std::vector<double> values_;
-  std::vector<Dual> duals_;  // of one variable; for rates only
+  std::vector<char> parameter_follows_;  // some design variable
+  std::vector<Dual> duals_;              // of one variable; for rates only
 };
 
 }  // namespace meniscus::case_data

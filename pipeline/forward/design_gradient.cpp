@@ -33,8 +33,8 @@ struct Backward {
   std::vector<double> by_density;   // per region, of all stages
   std::vector<double> by_modulus;   // likewise; both empty: 0
   frozen::FilmGradient film;
-  VectorX by_thickness;  // of walls; empty: 0
-  VectorX by_radius;     // of fillets; empty: 0
+  std::vector<VectorX> by_thickness;  // of walls; empty: 0
+  VectorX by_radius;                  // of fillets; empty: 0
 };
 
 class Adjoint {
@@ -260,9 +260,8 @@ double Adjoint::rate(const Backward& backward,
   for (std::size_t k = 0; k < backward.by_modulus.size(); ++k) {
     sum += backward.by_modulus[k] * rates.materials[k].youngs_modulus;
   }
-  for (Eigen::Index w = 0; w < backward.by_thickness.size(); ++w) {
-    const walls::WallSpec& wall = rates.walls[static_cast<std::size_t>(w)];
-    sum += backward.by_thickness[w] * wall.number.value_or(0.0);
+  for (std::size_t w = 0; w < backward.by_thickness.size(); ++w) {
+    sum += backward.by_thickness[w].dot(rates.walls[w].thickness.numbers);
   }
   for (Eigen::Index f = 0; f < backward.by_radius.size(); ++f) {
     const auto k = static_cast<std::size_t>(f);

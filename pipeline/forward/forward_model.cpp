@@ -1,5 +1,7 @@
 #include "pipeline/forward/forward_model.h"
 
+#include <fmt/format.h>
+
 #include "core/heed_stop.h"
 #include "evolve/energy/constrained_hessian.h"
 #include "fea/distributed/petsc_child.h"
@@ -69,6 +71,13 @@ DesignGradient ForwardModel::gradient(const Evaluation& evaluation,
     DesignGradient none;
     none.failure = Failure{FailureKind::NotANumber, error.what()};
     return none;
+  } catch (const ExpressionError& error) {
+    DesignGradient none;
+    none.failure =
+        Failure{FailureKind::NotANumber,
+                fmt::format("a field has no derivative by the design: {}",
+                            error.what())};
+    return none;
   } catch (const energy::ModesNotFound& error) {
     DesignGradient none;
     none.failure = Failure{FailureKind::SolverFailed, error.what()};
@@ -108,7 +117,7 @@ QuadraticSurface ForwardModel::surface(const case_data::EvaluatedCase& inputs,
 SurfaceMesh ForwardModel::boundary(const case_data::EvaluatedCase& inputs,
                                    const Points& film_points) const {
   const auto& walls = part_->walls;
-  return walls ? walls->fine(film_points, walls->thickness(inputs.walls))
+  return walls ? walls->fine(film_points, walls->numbers(inputs.walls))
                : part_->film->boundary(part_->rounded(inputs, film_points));
 }
 

@@ -373,7 +373,7 @@ Points FrozenPart::rounded(const case_data::EvaluatedCase& inputs,
 
 QuadraticSurface FrozenPart::surface(const case_data::EvaluatedCase& inputs,
                                      const Points& points) const {
-  return walls ? walls->surface(points, walls->thickness(inputs.walls))
+  return walls ? walls->surface(points, walls->numbers(inputs.walls))
                : film->surface(rounded(inputs, points));
 }
 
@@ -387,14 +387,14 @@ SurfaceGradient FrozenPart::to_surface(const case_data::EvaluatedCase& inputs,
   if (!walls) {
     Points by_rounded = film->transpose_surface(by_corners, by.mid);
     if (!fillets) {
-      return {std::move(by_rounded), VectorX(), VectorX()};
+      return {std::move(by_rounded), {}, VectorX()};
     }
     fillets::FilletGradient gradient =
         fillets->transpose(points, inputs.film_system, by_rounded);
-    return {std::move(gradient.film), VectorX(), std::move(gradient.radius)};
+    return {std::move(gradient.film), {}, std::move(gradient.radius)};
   }
   walls::WallGradient gradient = walls->transpose(
-      points, walls->thickness(inputs.walls), by_corners, by.mid);
+      points, walls->numbers(inputs.walls), by_corners, by.mid);
   return {std::move(gradient.film), std::move(gradient.thickness), VectorX()};
 }
 

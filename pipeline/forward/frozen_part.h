@@ -20,9 +20,10 @@ TetFigures figures_of(const TetMesh& mesh, const mesh_tet::TetQuality& quality);
 
 /// Derivatives of a number by what makes the part's surface.
 struct SurfaceGradient {
-  Points film;        // by the film's vertices
-  VectorX thickness;  // by the walls' thickness; empty without walls
-  VectorX fillets;    // by the fillets' radii; empty without fillets
+  Points film;                     // by the film's vertices
+  std::vector<VectorX> thickness;  // by the numbers of the walls'; empty
+                                   // without walls
+  VectorX fillets;  // by the fillets' radii; empty without fillets
 };
 
 struct FrozenPart {

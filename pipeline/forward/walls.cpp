@@ -169,7 +169,7 @@ SurfaceMesh boundary_of(const case_data::EvaluatedCase& inputs,
     return model.boundary(rounded_anew(inputs.film_system, model, points));
   }
   const walls::WallModel walls = wall_model(inputs, model, points);
-  return walls.fine(points, walls.thickness(inputs.walls));
+  return walls.fine(points, walls.numbers(inputs.walls));
 }
 
 std::optional<Failure> wall_failure(const case_data::EvaluatedCase& inputs,

@@ -38,12 +38,14 @@ std::vector<std::pair<std::string, const toml::node*>> in_file_order(
   return found;
 }
 
-/// What `shape` says; none without it, or with a problem noted.
-std::vector<int> read_shape(CaseContext& context, const CaseTable& table) {
-  if (!table.has("shape")) {
+}  // namespace
+
+std::vector<int> read_shape(CaseContext& context, const CaseTable& table,
+                            const char* key) {
+  if (!table.has(key)) {
     return {};
   }
-  const toml::node& node = *table.node("shape");
+  const toml::node& node = *table.node(key);
   const toml::array* array = node.as_array();
   const std::size_t wanted = array == nullptr ? 1 : array->size();
   std::vector<int> shape;
@@ -59,27 +61,31 @@ std::vector<int> read_shape(CaseContext& context, const CaseTable& table) {
   }
   if (shape.empty() || shape.size() != wanted || wanted > kMostIndices) {
     context.problems.add(
-        table.line("shape"),
-        fmt::format("{}.shape is {}; expected one to three whole numbers, each "
-                    "1 or more: 12 or [8, 4]",
-                    table.path(), described(node)));
+        table.line(key),
+        fmt::format("{}.{} is {}; expected one to three whole numbers, each 1 "
+                    "or more: 12 or [8, 4]",
+                    table.path(), key, described(node)));
     return {};
   }
   if (elements > kMostElements) {
     context.problems.add(
-        table.line("shape"),
-        fmt::format("{}.shape makes {:.0f} design variables; at most {} are "
-                    "taken",
-                    table.path(), elements, kMostElements));
+        table.line(key),
+        fmt::format("{}.{} makes {:.0f} {}; at most {} are taken", table.path(),
+                    key, elements,
+                    std::string_view(key) == "shape" ? "design variables"
+                                                     : "coefficients",
+                    kMostElements));
     return {};
   }
   return shape;
 }
 
+namespace {
+
 /// The design variables of one table: one, or all elements of a vector.
 void add_variables(CaseContext& context, const CaseTable& table,
                    case_data::Case& result) {
-  const std::vector<int> shape = read_shape(context, table);
+  const std::vector<int> shape = read_shape(context, table, "shape");
   if (shape.empty()) {
     result.design.push_back({.name = table.name(), .line = table.line()});
     return;
@@ -477,6 +483,19 @@ void warn_of_unused(CaseContext& context, const toml::table& root,
                     const case_data::Case& result) {
   if (!context.problems.empty()) {
     return;
+  }
+  for (std::size_t s = 0; s < result.shapes.size(); ++s) {
+    if (context.used_shapes.count(s) == 0) {
+      context.problems.warn(
+          result.shapes[s].line,
+          fmt::format("shapes.{} is not used", result.shapes[s].name));
+      continue;
+    }
+    for (const case_data::Quantity& c : result.shapes[s].coefficients) {
+      for (const int name : c.expression.names_used()) {
+        context.used[static_cast<std::size_t>(name)] = 1;
+      }
+    }
   }
   const toml::node* study = root.get("study");
   const auto in_study = [&](const std::string& name) {

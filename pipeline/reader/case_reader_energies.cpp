@@ -84,22 +84,6 @@ case_data::Quantity read_strength(CaseContext& context,
                                .value_or(none);
 }
 
-void require_frozen_field(CaseContext& context,
-                          const case_data::FieldEntry& field) {
-  std::vector<case_data::Quantity> all = {field.strength, field.power,
-                                          field.core, field.pressure.quantity};
-  for (const case_data::QuantityVector& v :
-       {field.at, field.normal, field.from, field.to}) {
-    all.insert(all.end(), v.begin(), v.end());
-  }
-  for (const case_data::QuantityVector& v : field.points) {
-    all.insert(all.end(), v.begin(), v.end());
-  }
-  for (const case_data::Quantity& quantity : all) {
-    require_frozen(context, quantity, "a field energy");
-  }
-}
-
 struct SpineCurveRow {
   const char* name;
   bool value;  // is it smooth?
@@ -221,8 +205,7 @@ TableSpec field_table() {
       "A field energy. Poles (" + pole_names() +
           ") at distance d add -strength (1 + (d / core)^2)^(-power / 2) to "
           "the energy per area of films or per volume of a body; a pressure "
-          "adds to a body's own. Part of the frozen film: no design variable "
-          "may move it",
+          "adds to a body's own. Design variables may move all of it",
       {{"kind", K::Choice, D::None, true, "what acts",
         case_data::choices_of(field_kinds())},
        {"at", K::Vector, D::Length, false, "of point, plane"},
@@ -242,7 +225,7 @@ TableSpec field_table() {
         "of poles: acts per area of these, or"},
        {"body", K::Name, D::None, false,
         "of poles and pressure: acts per volume of this"},
-       {"pressure", K::Place, D::Pressure, false,
+       {"pressure", K::Field, D::Pressure, false,
         "of pressure: above 0 inflates"}}};
 }
 
@@ -271,7 +254,6 @@ void read_fields(CaseContext& context, const toml::table& root,
     read_field_targets(context, table, result, field);
     field.pressure =
         table.place_quantity("pressure").value_or(case_data::PlaceQuantity{});
-    require_frozen_field(context, field);
     result.fields.push_back(std::move(field));
   }
 }

@@ -268,8 +268,11 @@ std::optional<case_data::PlaceQuantity> CaseTable::place_quantity(
     return std::nullopt;
   }
   const IndexScope scope(*context_, indices_);
-  return read_place_quantity(*context_, *node(key), dimension(key),
-                             fmt::format("{}.{}", path_, key));
+  const KeySpec* spec = find_key(*spec_, key);
+  const bool field = spec != nullptr && spec->type == KeyType::Field;
+  return read_place_quantity(
+      *context_, *node(key), dimension(key), fmt::format("{}.{}", path_, key),
+      field ? context_->shapes : std::vector<std::string>());
 }
 
 std::optional<Constant> CaseTable::measured(const char* key) const {

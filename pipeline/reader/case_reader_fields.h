@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -42,7 +43,9 @@ struct CaseContext {
   std::vector<std::optional<double>> constants;
   // Per name, as far as it is known; empty while parameters are read.
   std::vector<Measure> measures;
-  bool bodies_good = false;  // nothing was wrong with them
+  std::vector<std::string> shapes;    // of fields, by position
+  std::set<std::size_t> used_shapes;  // some expression has them
+  bool bodies_good = false;           // nothing was wrong with them
   // Of the copy of an entry with `repeat` that is being read: i, j, k.
   std::vector<int> indices;
   std::map<std::string, std::shared_ptr<step::StepEdges>>
@@ -97,6 +100,7 @@ class CaseTable {
   std::optional<case_data::Quantity> quantity(const char* key) const;
   /// One or several.
   std::vector<case_data::Quantity> quantities(const char* key) const;
+  /// Of a key of type Place, or Field.
   std::optional<case_data::PlaceQuantity> place_quantity(const char* key) const;
   std::optional<double> constant(const char* key) const;
   /// Of that dimension, whatever the vocabulary says.
@@ -177,10 +181,12 @@ std::optional<case_data::Quantity> read_quantity(
     CaseContext& context, const toml::node& node,
     std::optional<Dimension> dimension, const std::string& key);
 
-/// The same for a quantity that may also be an expression of x, y, z.
+/// The same for a quantity that may also be an expression of x, y, z and of
+/// more names after these.
 std::optional<case_data::PlaceQuantity> read_place_quantity(
     CaseContext& context, const toml::node& node,
-    std::optional<Dimension> dimension, const std::string& key);
+    std::optional<Dimension> dimension, const std::string& key,
+    const std::vector<std::string>& more = {});
 
 /// The dimension of an expression over the context's names; where two parts do
 /// not fit each other, a note and nothing known.

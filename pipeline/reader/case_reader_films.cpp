@@ -204,9 +204,6 @@ case_data::FilmEntry read_film(CaseContext& context, const CaseTable& table,
       case_data::PlaceQuantity{{.expression = Expression(1.0),
                                 .line = table.line(),
                                 .key = table.path() + ".tension"}});
-  if (film.tension.of_place) {
-    require_frozen(context, film.tension.quantity, "a tension of x, y, z");
-  }
   return film;
 }
 
@@ -466,9 +463,8 @@ TableSpec film_table() {
        {"curves", K::Names, D::None, false,
         "the curves that hold it; of facets and file those that its rims lie "
         "on, none where it is closed"},
-       {"tension", K::Place, D::Tension, false,
-        "energy per area of the film, above 0; 1 when left out. An expression "
-        "of x, y, z cannot depend on design variables"},
+       {"tension", K::Field, D::Tension, false,
+        "energy per area of the film, above 0; 1 when left out"},
        {"vertices", K::Vectors, D::Length, false,
         "of facets: where its corners are at first"},
        {"facets", K::Facets, D::None, false,

@@ -17,9 +17,13 @@ const char* const kQuantity =
 /// Notes which names the expression has, and its text where it has indices.
 void note_use(CaseContext& context, const Expression& expression,
               const std::string& text) {
+  const std::size_t places = context.used.size() + 3;  // names, then x, y, z
   for (const int name : expression.names_used()) {
-    if (static_cast<std::size_t>(name) < context.used.size()) {
-      context.used[static_cast<std::size_t>(name)] = 1;
+    const auto k = static_cast<std::size_t>(name);
+    if (k < context.used.size()) {
+      context.used[k] = 1;
+    } else if (k >= places) {
+      context.used_shapes.insert(k - places);
     }
   }
   if (text.find('[') == std::string::npos) {
@@ -157,9 +161,11 @@ std::optional<case_data::Quantity> read_quantity(
 
 std::optional<case_data::PlaceQuantity> read_place_quantity(
     CaseContext& context, const toml::node& node,
-    std::optional<Dimension> dimension, const std::string& key) {
+    std::optional<Dimension> dimension, const std::string& key,
+    const std::vector<std::string>& more) {
   std::vector<std::string> names = context.names;
   names.insert(names.end(), {"x", "y", "z"});
+  names.insert(names.end(), more.begin(), more.end());
   auto quantity = read_expression(context, node, dimension, key, names);
   if (!quantity) {
     return std::nullopt;

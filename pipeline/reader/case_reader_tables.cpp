@@ -267,6 +267,7 @@ void read_tables(const toml::table& root, const OverriddenNodes& overridden,
   read_head(context, root, result);
   read_names(context, root, result);
   read_symmetry(context, root, result);
+  read_shapes(context, root, result);
   read_geometry(context, root, result);
   read_walls(context, root, result);
   read_fillets(context, root, result);

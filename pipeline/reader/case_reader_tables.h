@@ -127,6 +127,13 @@ void read_walls(CaseContext& context, const toml::table& root,
                 case_data::Case& result);
 void read_fillets(CaseContext& context, const toml::table& root,
                   case_data::Case& result);
+/// One to three counts, each 1 or more; none without the key, or with a problem
+/// noted.
+std::vector<int> read_shape(CaseContext& context, const CaseTable& table,
+                            const char* key);
+/// Names that expressions of a film's fields know from then on.
+void read_shapes(CaseContext& context, const toml::table& root,
+                 case_data::Case& result);
 void read_fields(CaseContext& context, const toml::table& root,
                  case_data::Case& result);
 void read_spines(CaseContext& context, const toml::table& root,

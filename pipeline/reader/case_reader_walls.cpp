@@ -118,9 +118,9 @@ TableSpec wall_table() {
       "safe one and writes the closed surface",
       {{"films", K::Names, D::None, true,
         "the film, or several; where they share a curve they are joined"},
-       {"thickness", K::Place, D::Length, true,
-        "above 0; a number may follow the design, an expression of x, y, z "
-        "may not"},
+       {"thickness", K::Field, D::Length, true,
+        "above 0; the film takes it along: of x, y, z where the frozen film "
+        "is"},
        {"material", K::Name, D::None, false,
         "of the wall; a run needs it, and walls that meet have one"},
        {"fillet", K::Constant, D::Length, false,
@@ -141,10 +141,6 @@ void read_walls(CaseContext& context, const toml::table& root,
     wall.films = wall_films(context, table, result, taken);
     wall.thickness =
         table.place_quantity("thickness").value_or(case_data::PlaceQuantity{});
-    if (wall.thickness.of_place) {
-      require_frozen(context, wall.thickness.quantity,
-                     "a thickness of x, y, z");
-    }
     wall.side = case_data::row_named(wall_sides(),
                                      table.choice("side").value_or("both"))
                     .value;

@@ -72,6 +72,7 @@ std::vector<TableSpec> make_tables() {
          "part"}}},
       fillet_table(),
       wall_table(),
+      shape_table(),
       field_table(),
       spine_table(),
       {"resolution",

@@ -26,6 +26,7 @@ enum class KeyType {
   Quantities,      // one, or an array of them
   Constant,        // a quantity that no design variable moves
   Place,           // a quantity, or an expression that also knows x, y, z
+  Field,           // the same, and the case's shapes
   Vector,          // array of three quantities
   Vectors,         // array of arrays of three quantities
   Facets,          // array of arrays of three or more integers
@@ -81,6 +82,7 @@ TableSpec film_table();      // case_reader_films.cpp
 TableSpec solid_table();     // case_reader_films.cpp
 TableSpec wall_table();      // case_reader_walls.cpp
 TableSpec fillet_table();    // the same
+TableSpec shape_table();     // case_reader_shapes.cpp
 TableSpec field_table();     // case_reader_energies.cpp
 TableSpec spine_table();     // the same
 TableSpec bolt_table();      // case_reader_loads.cpp

@@ -41,6 +41,8 @@ const char* type_text(const KeySpec& key) {
       return "constant";
     case K::Place:
       return "quantity of x, y, z";
+    case K::Field:
+      return "quantity of x, y, z and shapes";
     case K::Vector:
       return "3 quantities";
     case K::Vectors:
@@ -213,6 +215,7 @@ Json type_schema(const KeySpec& key) {
     case K::Quantity:
     case K::Constant:
     case K::Place:
+    case K::Field:
       return quantity;
     case K::Quantities:
       return {{"anyOf", {quantity, array(quantity, 1, 0)}}};

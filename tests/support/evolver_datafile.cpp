@@ -67,15 +67,15 @@ std::string constraints(const films::FilmComplex& complex) {
   return text;
 }
 
-struct Numbers {
+struct Numbering {
   std::vector<Edge> edges;            // of the films
   std::vector<Triangle> facet_edges;  // per film facet
   std::vector<int> films;             // facets of films
   std::vector<int> vertex;            // from 1; 0: not in a film
 };
 
-Numbers number(const films::FilmComplex& complex) {
-  Numbers numbers;
+Numbering number(const films::FilmComplex& complex) {
+  Numbering numbers;
   std::vector<Triangle> facets;
   numbers.vertex.assign(complex.vertices.size(), 0);
   for (std::size_t f = 0; f < complex.mesh.facets.size(); ++f) {
@@ -107,7 +107,7 @@ Numbers number(const films::FilmComplex& complex) {
 }
 
 std::string vertices(const films::FilmComplex& complex,
-                     const Numbers& numbers) {
+                     const Numbering& numbers) {
   std::string text = "vertices\n";
   for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
     if (numbers.vertex[v] == 0) {
@@ -133,7 +133,7 @@ std::string vertices(const films::FilmComplex& complex,
   return text;
 }
 
-std::string edges(const films::FilmComplex& complex, const Numbers& numbers) {
+std::string edges(const films::FilmComplex& complex, const Numbering& numbers) {
   std::map<Edge, const films::ComplexEdge*> marked;
   for (const films::ComplexEdge& edge : complex.edges) {
     marked[edge_key(edge.a, edge.b)] = &edge;
@@ -160,7 +160,7 @@ std::string edges(const films::FilmComplex& complex, const Numbers& numbers) {
   return text;
 }
 
-std::string faces(const films::FilmComplex& complex, const Numbers& numbers) {
+std::string faces(const films::FilmComplex& complex, const Numbering& numbers) {
   std::string text = "\nfaces\n";
   for (std::size_t i = 0; i < numbers.films.size(); ++i) {
     const int f = numbers.films[i];
@@ -178,7 +178,8 @@ std::string faces(const films::FilmComplex& complex, const Numbers& numbers) {
   return text;
 }
 
-std::string bodies(const films::FilmComplex& complex, const Numbers& numbers) {
+std::string bodies(const films::FilmComplex& complex,
+                   const Numbering& numbers) {
   std::string text = complex.bodies.empty() ? "" : "\nbodies\n";
   for (std::size_t b = 0; b < complex.bodies.size(); ++b) {
     const films::ComplexBody& body = complex.bodies[b];
@@ -248,7 +249,7 @@ double evolver_cap_volume(const films::FilmComplex& complex,
 }
 
 std::string evolver_datafile(const films::FilmComplex& complex) {
-  const Numbers numbers = number(complex);
+  const Numbering numbers = number(complex);
   return "gravity_constant 0\n\n" + boundaries(complex) + constraints(complex) +
          vertices(complex, numbers) + edges(complex, numbers) +
          faces(complex, numbers) + bodies(complex, numbers) + "\nread\n";

@@ -14,6 +14,10 @@ double at(const Expression& expression, const Vec3& p) {
   return expression.evaluate(std::array{p.x(), p.y(), p.z()});
 }
 
+double at(const PlaceField& field, const Vec3& p) {
+  return at(with_numbers(field), p);
+}
+
 Vec3 at(const films::VectorField& field, const Vec3& p) {
   return {at(field[0], p), at(field[1], p), at(field[2], p)};
 }

@@ -48,6 +48,24 @@ TEST(Expression, KeepsThePrecedenceOfArithmetic) {
   EXPECT_EQ(value("a != 2"), 0.0);
 }
 
+TEST(Expression, PowersOfZeroHaveDerivativesWhereTheyAre) {
+  const Expression f = Expression::parse("a^b", kNames);
+  const auto at = [&](double b) {
+    const std::vector<Dual> values = {Dual::variable(0.0, 0, 2),
+                                      Dual::variable(b, 1, 2), Dual(0.0)};
+    return f.evaluate(values);
+  };
+  for (const double b : {2.0, 2.5, 3.0}) {
+    const Dual zero = at(b);
+    EXPECT_EQ(zero.value, 0.0);
+    EXPECT_EQ(zero.gradient.norm(), 0.0);
+    EXPECT_EQ(zero.hessian(0, 0), b == 2.0 ? 2.0 : 0.0);
+    EXPECT_EQ(zero.hessian(0, 1), 0.0);
+    EXPECT_EQ(zero.hessian(1, 1), 0.0);
+  }
+  EXPECT_THROW(at(1.5), ExpressionError);  // bends without end
+}
+
 TEST(Expression, KnowsItsFunctionsAndConstants) {
   constexpr double kRounding = 1e-15;
   EXPECT_NEAR(value("sin(30 * deg)"), 0.5, kRounding);

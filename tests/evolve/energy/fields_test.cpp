@@ -60,15 +60,11 @@ double distance(const films::PoleShape& shape, const Vec3& at) {
   return least;
 }
 
-double value_at(const Expression& phi, const Vec3& at) {
-  return phi.evaluate(std::span<const double>(at.data(), 3));
-}
-
 TEST(Fields, PotentialFollowsTheDistanceToEveryShape) {
   for (const films::PoleShape& shape : all_shapes()) {
     const films::FieldSpec field{"pole", shape, 1.5,
                                  3.0,    0.4,   films::PerArea{}};
-    const Expression phi = energy::field_expression(field);
+    const Expression phi = with_numbers(energy::place_field(field));
     for (int i = 0; i < 50; ++i) {
       const Vec3 at(3 * std::sin(7.0 * i), 3 * std::cos(3.0 * i),
                     2 * std::sin(1.0 + 5.0 * i));
@@ -190,7 +186,7 @@ TEST(Fields, ConstantFieldMeasuresTheVolumeWhereverRaysStart) {
   for (const Vec3& origin : {Vec3(0, 0, 0), Vec3(3, -2, 1)}) {
     films::FilmQuantity quantity =
         energy::pressure_quantity(complex, "push", "drop", Expression(2.0));
-    quantity.origin = origin;
+    quantity.origin.at = origin;
     complex.quantities = {quantity};
     const FieldEnergy field(complex);
     EXPECT_NEAR(field.at(complex.mesh.points), -2.0 * volume, 1e-12 * volume);
@@ -206,7 +202,7 @@ TEST(Fields, BodyIntegralsDoNotDependOnTheOrigin) {
     films::FilmQuantity quantity = energy::pressure_quantity(
         complex, "push", "drop",
         energy::place_expression("1 + x*y*z + x^2 + z^4"));
-    quantity.origin = origin;
+    quantity.origin.at = origin;
     complex.quantities = {quantity};
     found.push_back(FieldEnergy(complex).at(complex.mesh.points));
   }

@@ -77,6 +77,25 @@ void subtract(const curves::CurveShape& low, curves::CurveShape& high) {
   }
 }
 
+void subtract(const films::FieldSpec& low, films::FieldSpec& high) {
+  high.strength -= low.strength;
+  high.power -= low.power;
+  high.core -= low.core;
+  if (auto* p = std::get_if<films::PointPole>(&high.shape)) {
+    p->at -= std::get<films::PointPole>(low.shape).at;
+  } else if (auto* s = std::get_if<films::SegmentPole>(&high.shape)) {
+    s->from -= std::get<films::SegmentPole>(low.shape).from;
+    s->to -= std::get<films::SegmentPole>(low.shape).to;
+  } else if (auto* l = std::get_if<films::PolylinePole>(&high.shape)) {
+    for (std::size_t k = 0; k < l->points.size(); ++k) {
+      l->points[k] -= std::get<films::PolylinePole>(low.shape).points[k];
+    }
+  } else if (auto* q = std::get_if<films::PlanePole>(&high.shape)) {
+    q->at -= std::get<films::PlanePole>(low.shape).at;
+    q->normal -= std::get<films::PlanePole>(low.shape).normal;
+  }
+}
+
 films::FilmSystem rates_of(const Design& design) {
   const films::FilmSystem low = design(0.0);
   films::FilmSystem rates = design(1.0);
@@ -85,6 +104,16 @@ films::FilmSystem rates_of(const Design& design) {
   }
   for (std::size_t f = 0; f < rates.films.size(); ++f) {
     rates.films[f].tension -= low.films[f].tension;
+    if (rates.films[f].tension_field) {
+      rates.films[f].tension_field->numbers -=
+          low.films[f].tension_field->numbers;
+    }
+  }
+  for (std::size_t f = 0; f < rates.fields.size(); ++f) {
+    subtract(low.fields[f], rates.fields[f]);
+  }
+  for (std::size_t p = 0; p < rates.pressures.size(); ++p) {
+    rates.pressures[p].pressure.numbers -= low.pressures[p].pressure.numbers;
   }
   for (std::size_t c = 0; c < rates.caps.size(); ++c) {
     if (rates.caps[c].wall) {
@@ -489,6 +518,137 @@ TEST(FilmGradient, InTensionAndEnergyFields) {
   const frozen::FilmModel model =
       frozen::FilmModel::freeze(in_fields(0), {.edge = 0.6, .refinements = 0});
   expect_exact(model, in_fields, 0.3, 1e-2);
+}
+
+VectorX waving(Eigen::Index count, double size, double phase) {
+  VectorX result(count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    result[k] = 1.0 + size * std::sin(phase + 1.7 * static_cast<double>(k));
+  }
+  return result;
+}
+
+/// Fields that all follow the design.
+films::FilmSystem in_smooth_fields(double p) {
+  static const auto kBox =
+      box_splines({.from = {-1, -1, 0}, .to = {1, 1, 1}, .counts = {3, 4, 3}});
+  static const auto kAxis =
+      axis_splines({.from = {0, 0.1, 0}, .along = 3, .around = 4});
+  films::FilmSystem system = in_fields(p);
+  PlaceField tension = Expression::parse("a*skin*(1+0.1*sin(x+b))",
+                                         {"x", "y", "z", "a", "b", "skin"});
+  tension.names = {"a", "b"};
+  tension.shapes = {kBox};
+  tension.numbers = waving(2 + kBox->coefficients(), 0.1, 0.4) +
+                    p * waving(2 + kBox->coefficients(), 0.1, 1.3) * 0.2;
+  system.films[0].tension_field = tension;
+  PlaceField gas =
+      Expression::parse("c*z+0.1*ring", {"x", "y", "z", "c", "ring"});
+  gas.names = {"c"};
+  gas.shapes = {kAxis};
+  gas.numbers = waving(1 + kAxis->coefficients(), 0.3, 0.0) +
+                p * waving(1 + kAxis->coefficients(), 0.3, 0.7) * 0.3;
+  system.pressures = {{"gas", "body", gas}};
+  system.fields = {
+      {"plane",
+       films::PlanePole{Vec3(0, 0, 0.5 + 0.2 * p), Vec3(0.2 * p, 0, 1)},
+       0.2 + 0.1 * p, 2.0 + 0.5 * p, 0.4, films::PerArea{{"film"}}, true, true},
+      {"point", films::PointPole{Vec3(0.2, 0.3 * p, 0.4)}, 0.1, 2.0,
+       0.5 + 0.1 * p, films::PerVolume{"body"}, true, true},
+      {"still", films::PointPole{Vec3(0, 0.2, 0.3)}, 0.05, 2.0, 0.7,
+       films::PerArea{{"film"}}}};
+  return system;
+}
+
+/// And poles whose second derivatives jump, which no margin likes.
+films::FilmSystem in_moving_fields(double p) {
+  films::FilmSystem system = in_smooth_fields(p);
+  const films::FieldSpec still = system.fields.back();
+  system.fields.pop_back();
+  const films::FieldSpec more[] = {
+      {"segment",
+       films::SegmentPole{Vec3(-0.4, 0.1 * p, 0.4),
+                          Vec3(0.3 + p * 0.2, 0, 0.7)},
+       0.1 - 0.3 * p, 3.0, 0.6, films::PerArea{{"film"}}, true, true},
+      {"path",
+       films::PolylinePole{
+           {Vec3(3, 0, 0), Vec3(3, 1, 0.2 * p), Vec3(4 + p, 2, 1)}},
+       0.2, 3.0 - 0.2 * p, 0.6, films::PerArea{{"film"}}, true, true}};
+  system.fields.insert(system.fields.end(), std::begin(more), std::end(more));
+  system.fields.push_back(still);
+  return system;
+}
+
+TEST(FilmGradient, InFieldsThatFollowTheDesign) {
+  const frozen::FilmModel model = frozen::FilmModel::freeze(
+      in_moving_fields(0), {.edge = 0.9, .refinements = 0});
+  expect_exact(model, in_moving_fields, 0.3, 1e-2);
+}
+
+TEST(FilmMargin, HasAnExactGradientInFieldsThatFollowTheDesign) {
+  const frozen::FilmModel model = frozen::FilmModel::freeze(
+      in_smooth_fields(0), {.edge = 1.0, .refinements = 0});
+  expect_exact(
+      model, in_smooth_fields, 0.2, 4e-3,
+      [&model](const settle::FilmState& film, const films::FilmSystem& system) {
+        return model.margin(film, system);
+      });
+}
+
+TEST(FilmGradient, InMovingFieldsIsTheTangentTransposed) {
+  const frozen::FilmModel model = frozen::FilmModel::freeze(
+      in_moving_fields(0), {.edge = 0.9, .refinements = 0});
+  const films::FilmSystem system = in_moving_fields(0.2);
+  const settle::FilmState film = model.settle(system);
+  frozen::FilmCovector by;
+  by.points = covector(model).points;
+  const films::FilmSystem rates = rates_of(in_moving_fields);
+  const double backward =
+      model.rate(model.transpose(film, system, {by}).front(), system, rates);
+  EXPECT_NEAR(
+      flat(by.points).dot(flat(model.tangents(film, system, {rates}).front())),
+      backward, 1e-11 * std::abs(backward));
+}
+
+// Another design of a model's fields is the film that another model of that
+// design has.
+TEST(FilmModel, FollowsItsFields) {
+  const frozen::FilmModelOptions options{.edge = 0.4, .refinements = 0};
+  const films::FilmSystem there = in_moving_fields(0.2);
+  const settle::FilmState moved =
+      frozen::FilmModel::freeze(in_moving_fields(0), options).settle(there);
+  const settle::FilmState own =
+      frozen::FilmModel::freeze(there, options).settle(there);
+  ASSERT_FALSE(moved.failure) << moved.report.verdict;
+  ASSERT_FALSE(own.failure) << own.report.verdict;
+  // Other facets of the same film: of second order in their edges.
+  EXPECT_NEAR(moved.report.energy, own.report.energy,
+              4e-3 * std::abs(own.report.energy));
+  films::FilmSystem other = there;
+  other.fields.pop_back();
+  EXPECT_THROW(frozen::FilmModel::freeze(there, options).settle(other),
+               InvalidInput);
+}
+
+// A deep pole moves far from where its model was frozen: rays to it go along.
+TEST(FilmModel, FollowsAPoleThatGoesFar) {
+  const auto design = [](double p) {
+    films::FilmSystem system = systems::cylinder(1.0);
+    system.bodies[0].volume.reset();
+    system.bodies[0].pressure = 1.0;
+    system.fields = {{"pull", films::PointPole{Vec3(0.5 * p, 0, 0.5)}, 0.3, 2.0,
+                      0.1, films::PerVolume{"body"}, true, true}};
+    return system;
+  };
+  const frozen::FilmModelOptions options{.edge = 0.3, .refinements = 0};
+  const settle::FilmState moved =
+      frozen::FilmModel::freeze(design(0), options).settle(design(1));
+  const settle::FilmState own =
+      frozen::FilmModel::freeze(design(1), options).settle(design(1));
+  ASSERT_FALSE(moved.failure) << moved.report.verdict;
+  ASSERT_FALSE(own.failure) << own.report.verdict;
+  EXPECT_NEAR(moved.report.energy, own.report.energy,
+              2e-3 * std::abs(own.report.energy));
 }
 
 // Young and Laplace without a mesh: the energy at rest grows with the volume

@@ -91,9 +91,8 @@ TEST(Contacts, AFilmOverABallLeavesItTangentially) {
         settle::find_equilibrium(complex, {.refinements = level});
     ASSERT_FALSE(state.failure) << state.report.verdict;
     for (std::size_t v = 0; v < state.points.size(); ++v) {
-      EXPECT_GT(
-          energy::jet_at(complex.level_sets[0].formula, state.points[v]).value,
-          -1e-9);
+      EXPECT_GT(jet_at(complex.level_sets[0].formula, state.points[v]).value,
+                -1e-9);
     }
     const double next = std::abs(state.report.area - exact);
     if (level > 3) {

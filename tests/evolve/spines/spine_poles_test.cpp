@@ -15,7 +15,7 @@ namespace {
 
 using energy::JetOrder;
 
-energy::Numbers span_of(const VectorX& v) {
+Numbers span_of(const VectorX& v) {
   return {v.data(), static_cast<std::size_t>(v.size())};
 }
 

@@ -131,14 +131,21 @@ walls::WallFilms films_of(SurfaceMesh mesh, int levels, double thickness) {
   return films;
 }
 
+/// A number that follows the design.
+PlaceField uniform(double value) {
+  PlaceField field = Expression::parse("t", {"x", "y", "z", "t"});
+  field.names = {"t"};
+  field.numbers = VectorX::Constant(1, value);
+  return field;
+}
+
 walls::WallSpec spec(const SurfaceMesh& mesh, double thickness,
                      std::optional<double> fillet = std::nullopt) {
   return {.name = "web",
           .films = mesh.labels,
-          .thickness = Expression(thickness),
+          .thickness = uniform(thickness),
           .side = walls::WallSide::Both,
           .fillet = fillet,
-          .number = thickness,
           .region = 0};
 }
 
@@ -223,7 +230,7 @@ TEST_P(WallsAtALine, AreClosedAndAsThickAsAsked) {
         << film;
   }
   const QuadraticSurface surface = made.model.surface(
-      made.films.mesh.points, made.model.thickness(made.specs));
+      made.films.mesh.points, made.model.numbers(made.specs));
   EXPECT_TRUE(check_surface(surface.base).empty())
       << summary(check_surface(surface.base));
 }
@@ -291,7 +298,7 @@ TEST(WallModel, TurnsWithItsFilm) {
   for (Vec3& p : turned) {
     p = turn * p + Vec3(5, 6, 7);
   }
-  const VectorX t = made.model.thickness(made.specs);
+  const std::vector<VectorX> t = made.model.numbers(made.specs);
   const Points before = made.model.fine(made.films.mesh.points, t).points;
   const Points after = made.model.fine(turned, t).points;
   for (std::size_t p = 0; p < before.size(); ++p) {
@@ -303,17 +310,25 @@ TEST(WallModel, TurnsWithItsFilm) {
 TEST(WallModel, DoublesWithItsThickness) {
   const Made made = make(fan({0, 90, 180}), 0.05);
   const Points& x = made.films.mesh.points;
-  const VectorX t = made.model.thickness(made.specs);
+  const std::vector<VectorX> t = made.model.numbers(made.specs);
   const double once = enclosed_volume(made.model.fine(x, t));
-  const double twice = enclosed_volume(made.model.fine(x, 2.0 * t));
+  const double twice = enclosed_volume(made.model.fine(x, {2.0 * t[0]}));
   const double again = make(fan({0, 90, 180}), 0.10).model.walls().at(0).volume;
   EXPECT_NEAR(twice, again, 0.01 * again);
   EXPECT_GT(twice, 1.9 * once);
 }
 
 TEST(WallModel, TransposesItsDerivative) {
-  const Made made = make(fan({0, 100, 190}, 4), 0.1);
-  const VectorX t = made.model.thickness(made.specs);
+  const SurfaceMesh mesh = fan({0, 100, 190}, 4);
+  std::vector<walls::WallSpec> specs = {spec(mesh, 0.1)};
+  PlaceField& thickness = specs[0].thickness;
+  thickness = Expression::parse("t*(1+0.3*x*s)", {"x", "y", "z", "t", "s"});
+  thickness.names = {"t", "s"};
+  thickness.numbers = VectorX::Constant(2, 0.1);
+  thickness.numbers[1] = 0.7;
+  const walls::WallFilms films = films_of(mesh, 1, 0.1);
+  const Made made = {films, specs, walls::WallModel(films, specs)};
+  const std::vector<VectorX> t = {1.2 * thickness.numbers};
   Points film = made.films.mesh.points;
   Points rate(film.size());
   for (std::size_t v = 0; v < film.size(); ++v) {
@@ -321,8 +336,9 @@ TEST(WallModel, TransposesItsDerivative) {
     rate[v] = Vec3(std::sin(k), std::sin(2.0 * k), std::sin(3.0 * k));
     film[v] += 0.02 * Vec3(std::cos(k), std::cos(2.0 * k), std::cos(3.0 * k));
   }
-  const auto objective = [&](const Points& x, const VectorX& thickness) {
-    const QuadraticSurface s = made.model.surface(x, thickness);
+  const auto objective = [&](const Points& x,
+                             const std::vector<VectorX>& numbers) {
+    const QuadraticSurface s = made.model.surface(x, numbers);
     double sum = 0.0;
     for (std::size_t i = 0; i < s.base.points.size(); ++i) {
       sum += std::sin(1.0 * i) * s.base.points[i].dot(Vec3(1, 2, 3));
@@ -355,17 +371,17 @@ TEST(WallModel, TransposesItsDerivative) {
   const double by_film =
       (objective(ahead, t) - objective(behind, t)) / (2.0 * step);
   EXPECT_NEAR(exact, by_film, kDifference * std::abs(by_film));
-  const VectorX more = t.array() + step;
-  const VectorX less = t.array() - step;
-  const double by_thickness =
-      (objective(film, more) - objective(film, less)) / (2.0 * step);
-  EXPECT_NEAR(gradient.thickness[0], by_thickness,
+  const VectorX way(VectorX::LinSpaced(2, 1.0, 0.4));
+  const double by_thickness = (objective(film, {t[0] + step * way}) -
+                               objective(film, {t[0] - step * way})) /
+                              (2.0 * step);
+  EXPECT_NEAR(gradient.thickness[0].dot(way), by_thickness,
               kDifference * std::abs(by_thickness));
 }
 
 TEST(WallModel, SplitsItsFacets) {
   Made made = make(fan({0, 90, 180}, 4), 0.2, 2);
-  const VectorX t = made.model.thickness(made.specs);
+  const std::vector<VectorX> t = made.model.numbers(made.specs);
   const Points& x = made.films.mesh.points;
   const std::size_t before = made.model.surface(x, t).base.facets.size();
   std::vector<char> marked(before, 0);

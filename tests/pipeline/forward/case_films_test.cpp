@@ -31,8 +31,8 @@ std::string with(const std::string& more) {
   return changed(strut(), "[resolution]", more + "[resolution]");
 }
 
-double at(const Expression& expression, double x, double y, double z) {
-  return expression.evaluate(std::span<const double>(std::array{x, y, z}));
+double at(const PlaceField& field, double x, double y, double z) {
+  return value_at(field, field.own(), {x, y, z});
 }
 
 TEST(CaseTension, OfPlaceTakesTheCasesNumbers) {
@@ -48,6 +48,12 @@ TEST(CaseTension, OfPlaceTakesTheCasesNumbers) {
   EXPECT_DOUBLE_EQ(at(*film.tension_field, 0, 0, 30),
                    1.0 + 0.25 * std::exp(-0.5));
   EXPECT_DOUBLE_EQ(at(*film.tension_field, 31, 0, 0), 1.25 + std::exp(1.0));
+  EXPECT_FALSE(film.tension_field->has_numbers());  // load and length stay
+  const films::FilmSpec moves = tension("\"load/1e3 + foot*exp(-z/length)\"");
+  EXPECT_THAT(moves.tension_field->names, ElementsAre("foot"));
+  EXPECT_THAT(moves.tension_field->numbers, ElementsAre(25.0));
+  EXPECT_DOUBLE_EQ(at(*moves.tension_field, 1, 2, 30),
+                   1.0 + 25.0 * std::exp(-0.5));
   EXPECT_EQ(tension("\"foot / 10\"").tension, 2.5);
   EXPECT_FALSE(tension("\"foot / 10\"").tension_field);
   EXPECT_DOUBLE_EQ(tension("\"2 N/m\"").tension, 2e-3);
@@ -101,16 +107,12 @@ TEST(CaseWalls, NeedNoBodies) {
   EXPECT_DOUBLE_EQ(at(inputs.walls[0].thickness, 0, 0, 4), 1.24);
 }
 
-// Of places it is found once, on the frozen film.
-TEST(CaseWalls, OfPlacesDoNotFollowTheDesign) {
-  const reader::CaseReading reading = reader::read_case_text(
-      tube("films = [\"skin\"]\nthickness = \"1 + foot*z/1e3\"\n"),
-      "case.toml");
-  ASSERT_EQ(reading.problems.size(), 1U);
-  EXPECT_THAT(reading.problems[0],
-              HasSubstr("walls.web.thickness depends on "
-                        "'foot', which a design variable"));
-  EXPECT_THAT(reading.problems[0], HasSubstr("take 'foot' out of it"));
+TEST(CaseWalls, OfPlacesFollowTheDesign) {
+  const case_data::EvaluatedCase inputs =
+      numbers_of(tube("films = [\"skin\"]\nthickness = \"1 + foot*z/1e3\"\n"));
+  EXPECT_THAT(inputs.walls[0].thickness.names, ElementsAre("foot"));
+  EXPECT_THAT(inputs.walls[0].thickness.numbers, ElementsAre(25.0));
+  EXPECT_DOUBLE_EQ(at(inputs.walls[0].thickness, 0, 0, 4), 1.1);
 }
 
 class CaseWallsOf : public testing::TestWithParam<const char*> {};

@@ -122,16 +122,20 @@ TEST(DesignVectors, IndicesMayBeConstantParameters) {
 }
 
 TEST(DesignVectors, OfPlaceKeepTheirValueInFields) {
-  // Expressions of place are bound to values as text.
+  // Those of films keep them as numbers, others are bound to values as text.
   const std::string text =
       changed(tube("films = [\"skin\"]\nthickness = "
                    "\"s[2] + s[ 1 ] * z / 1000\"\n"),
               "[design.foot]",
               "[design.s]\nshape = 2\ninitial = [3, 0.5]\nbounds = [0.1, 4]\n"
               "[design.foot]");
-  const reader::CaseReading reading = reading_of(text);
-  // The thickness is frozen, so an element is refused there by name.
-  EXPECT_THAT(reading.problems, Contains(HasSubstr("'s[1]'")));
+  const case_data::Case walled = case_of(text);
+  const PlaceField thickness =
+      case_data::evaluate(walled, case_data::initial_design(walled))
+          .walls[0]
+          .thickness;
+  EXPECT_THAT(numbers(thickness.numbers), ElementsAre(3.0, 0.5));
+  EXPECT_DOUBLE_EQ(value_at(thickness, thickness.own(), {0, 0, 20}), 0.56);
   const case_data::Case input = case_of(changed(
       petal_strut(),
       "loads = [{ on = \"head_pad\", force = [\"load\", "
