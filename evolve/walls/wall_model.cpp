@@ -244,6 +244,7 @@ WallGradient WallModel::transpose(const Points& film,
   WallGradient result{.film = Points(film.size(), Vec3::Zero()),
                       .thickness = {}};
   std::vector<VectorX> by_ratio;
+  by_ratio.reserve(ratio.size());
   for (const VectorX& of_wall : ratio) {
     by_ratio.push_back(VectorX::Zero(of_wall.size()));
   }

@@ -281,6 +281,7 @@ TEST(PlaceField, FormulasTransposeTheirSecondDerivatives) {
         f.transpose(span_of(v), span_of(r), by_value, by_rate,
                     {by_values.data(), 4}, {by_rates.data(), 4});
     std::vector<Dual> duals;
+    duals.reserve(4);
     for (int i = 0; i < 4; ++i) {
       duals.push_back(Dual::variable(v[i], i, 4));
     }

@@ -1,4 +1,5 @@
 // Shapes of fields, and what of a film may follow the design by them.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -100,9 +101,10 @@ TEST(CaseShapes, KeepNamesApart) {
       "[design.n0]\ninitial = 0.25\nbounds = [0.1, 1]\n";
   for (const std::string name : {"t_2_3_", "n1", "n2", "other"}) {
     const case_data::Case input = case_of(strut_with(
-        vectors + "[shapes." + name +
-            "]\nkind = \"radial\"\npoints = [[0, 0, 0]]\ncoefficients = 7\n",
-        "\"" + name + " + 10*t[2,3] + 100*t_2[3] + n0 + 0*z\""));
+        fmt::format("{}[shapes.{}]\nkind = \"radial\"\npoints = [[0, 0, 0]]\n"
+                    "coefficients = 7\n",
+                    vectors, name),
+        fmt::format("\"{} + 10*t[2,3] + 100*t_2[3] + n0 + 0*z\"", name)));
     const PlaceField field =
         *case_data::evaluate(input, case_data::initial_design(input))
              .film_system.films[0]
