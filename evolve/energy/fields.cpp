@@ -368,6 +368,9 @@ PlaceField place_field(const films::FieldSpec& field) {
 }
 
 VectorX field_numbers(const films::FieldSpec& field) {
+  if (!field.moves && !field.place_moves) {
+    return {};
+  }
   FieldNumbers numbers;
   formula_of(field, numbers);
   return numbers.numbers();

@@ -111,13 +111,16 @@ Vec3 radial_value(const PlaceField& phi, Numbers numbers,
 
 namespace {
 
-/// How the sums of a ray change with where it begins: of phi, and of t grad
-/// phi.
+/// Sums of a ray of phi itself, and how these change with where it begins: what
+/// a moving pole asks beside its numbers.
 struct ByOrigin {
+  PlaceJet here;
   Vec3 value = Vec3::Zero();
   Mat3 gradient = Mat3::Zero();
 
   void add(const RayPoint& point, const PlaceJet& part) {
+    here.value += point.weight * part.value;
+    here.gradient += point.weight * point.t * part.gradient;
     value += point.weight * (1.0 - point.t) * part.gradient;
     gradient += point.weight * point.t * (1.0 - point.t) * part.hessian;
   }
@@ -130,7 +133,6 @@ FieldJet radial_rate(const PlaceField& phi, Numbers numbers, Numbers rates,
   const Vec3 from = place_of(origin, numbers);
   const Vec3 ray = at - from;
   PlaceJet sum;
-  PlaceJet here;  // of phi itself
   ByOrigin by_origin;
   for (const RayPoint& point : ray_rule(origin)) {
     const Vec3 place = from + point.t * ray;
@@ -138,18 +140,16 @@ FieldJet radial_rate(const PlaceField& phi, Numbers numbers, Numbers rates,
     sum.value += point.weight * part.value;
     sum.gradient += point.weight * point.t * part.gradient;
     if (origin.moving_points > 0) {
-      const PlaceJet own = jet_at(phi, numbers, place);
-      here.value += point.weight * own.value;
-      here.gradient += point.weight * point.t * own.gradient;
-      by_origin.add(point, own);
+      by_origin.add(point, jet_at(phi, numbers, place));
     }
   }
   FieldJet jet = along(ray, sum);
   if (origin.moving_points > 0) {
     const Vec3 way = place_of(origin, rates);
     const double grows = by_origin.value.dot(way);
-    jet.value += grows * ray - here.value * way;
-    jet.slope += grows * Mat3::Identity() - way * here.gradient.transpose() +
+    jet.value += grows * ray - by_origin.here.value * way;
+    jet.slope += grows * Mat3::Identity() -
+                 way * by_origin.here.gradient.transpose() +
                  ray * (by_origin.gradient * way).transpose();
   }
   return jet;
@@ -163,21 +163,18 @@ void add_radial_by_numbers(const PlaceField& phi, Numbers numbers,
   const Vec3 ray = at - from;
   const double value = by_value.dot(ray) + by_slope.trace();
   const Vec3 gradient = by_slope.transpose() * ray;
-  PlaceJet here;
   ByOrigin by_origin;
   for (const RayPoint& point : ray_rule(origin)) {
     const Vec3 place = from + point.t * ray;
     add_by_numbers(phi, numbers, place, point.weight * value,
                    point.weight * point.t * gradient, sum);
     if (origin.moving_points > 0) {
-      const PlaceJet own = jet_at(phi, numbers, place);
-      here.value += point.weight * own.value;
-      here.gradient += point.weight * point.t * own.gradient;
-      by_origin.add(point, own);
+      by_origin.add(point, jet_at(phi, numbers, place));
     }
   }
-  const Vec3 by_from = value * by_origin.value - here.value * by_value -
-                       by_slope * here.gradient + by_origin.gradient * gradient;
+  const Vec3 by_from =
+      value * by_origin.value - by_origin.here.value * by_value -
+      by_slope * by_origin.here.gradient + by_origin.gradient * gradient;
   for (int k = 0; k < origin.moving_points; ++k) {
     sum.segment<3>(kFirstPlace + 3 * k) += by_from / origin.moving_points;
   }

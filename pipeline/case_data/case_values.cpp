@@ -149,13 +149,14 @@ PlaceField CaseValues::place_field(const PlaceQuantity& place_quantity) const {
   result.text = from.text();
   std::vector<double> numbers;
   std::vector<double> coefficients;
-  std::vector<std::string> all = {"x", "y", "z"};
+  std::vector<std::string> shapes;
   const std::size_t first_shape = names_.size() + 3;
   for (const int name : from.names_used()) {
     const auto k = static_cast<std::size_t>(name);
     if (k >= first_shape) {
       const ShapeEntry& entry = input_.shapes[k - first_shape];
       result.shapes.push_back(entry.shape);
+      shapes.push_back(entry.name);
       for (const Quantity& coefficient : entry.coefficients) {
         coefficients.push_back(at(coefficient));
       }
@@ -169,16 +170,15 @@ PlaceField CaseValues::place_field(const PlaceQuantity& place_quantity) const {
       after.push_back(fmt::format("({})", values_[k]));
     }
   }
-  all.insert(all.end(), result.names.begin(), result.names.end());
-  for (const int name : from.names_used()) {
-    if (static_cast<std::size_t>(name) >= first_shape) {
-      all.push_back(
-          input_.shapes[static_cast<std::size_t>(name) - first_shape].name);
-    }
-  }
   numbers.insert(numbers.end(), coefficients.begin(), coefficients.end());
   result.numbers =
       Eigen::Map<const VectorX>(numbers.data(), std::ssize(numbers));
+  if (are_rates()) {
+    return result;  // of these only the numbers differ
+  }
+  std::vector<std::string> all = {"x", "y", "z"};
+  all.insert(all.end(), result.names.begin(), result.names.end());
+  all.insert(all.end(), shapes.begin(), shapes.end());
   try {
     result.formula =
         Expression::parse(with_texts(from.text(), before, after), all);
