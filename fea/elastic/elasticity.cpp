@@ -45,9 +45,12 @@ ElasticModel::ElasticModel(const TetMesh& base,
           base, cases, impl_->system->base().regions, matrix, nullptr);
     };
     solve_by(options);
-    // Multigrid comes to a halt where material is nearly incompressible and
-    // springs hardly hold: the model goes on with a factor.
-    if (impl_->base.failure && impl_->base.report.solver != "cholmod" &&
+    // Multigrid comes to a halt, or is slow, where walls are thin, material is
+    // nearly incompressible, or springs hardly hold: the model goes on with a
+    // factor, which serves the designs to come as well.
+    if ((impl_->base.failure ||
+         impl_->base.report.solver == "cholmod after multigrid") &&
+        impl_->base.report.solver != "cholmod" &&
         options.solver == equations::SolverKind::Automatic &&
         impl_->base.report.dofs <= solver::kSecondChance) {
       equations::ElasticOptions factor = options;
@@ -109,13 +112,14 @@ equations::ElasticSolution ElasticModel::solve(
     return result;
   }
   const double seconds = timer.seconds();
-  std::vector<equations::PinMotions> pins;
-  result = system.solve(mesh, load_cases, regions, matrix, &impl_->base, &pins);
+  std::vector<equations::SolvedGroup> solved;
+  result =
+      system.solve(mesh, load_cases, regions, matrix, &impl_->base, &solved);
   result.report.setup_seconds += seconds;
   if (keep != nullptr && !result.failure) {
     keep->kept_ = std::make_unique<equations::KeptState>(
         system.keep(mesh, load_cases, std::move(regions.laws),
-                    std::move(matrix), std::move(pins)));
+                    std::move(matrix), std::move(solved)));
   }
   return result;
 }

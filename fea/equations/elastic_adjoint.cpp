@@ -87,11 +87,14 @@ void solve_group(const KeptState& state, const KeptState::Group& group,
   const VectorX diagonal = solver::diagonal_of(matrix);
   HeldSolver solver({.pattern = state.table->pattern,
                      .matrix = matrix,
-                     .preconditioner = *group.preconditioner,
+                     .preconditioner = group.solved.factor != nullptr
+                                           ? *group.solved.factor
+                                           : *group.preconditioner,
                      .restraints = group.restraints,
                      .tolerance = state.tolerance,
                      .max_iterations = state.max_iterations,
-                     .monitor = *state.monitor});
+                     .monitor = *state.monitor,
+                     .patience = state.patience});
   for (std::size_t first = 0; first < open.size();
        first += solver::kMostColumns) {
     std::vector<VectorX> right;
@@ -104,7 +107,7 @@ void solve_group(const KeptState& state, const KeptState::Group& group,
                                 VectorX::Zero(right.front().size()));
     const std::vector<solver::CgColumn> columns = solver.solve(right, lambda);
     for (std::size_t k = 0; k < right.size(); ++k) {
-      release_pins(group.pins, solver, right[k], lambda[k]);
+      release_pins(group.solved.pins, solver, right[k], lambda[k]);
       const std::size_t at = open[first + k];
       finish_solution(state, group,
                       state.names[static_cast<std::size_t>(load_cases[at])],
@@ -124,7 +127,7 @@ KeptState ElasticSystem::keep(const TetMesh& mesh,
                               const std::vector<loads::LoadCase>& load_cases,
                               std::vector<element::ElasticLaw> laws,
                               solver::BlockMatrix<double> matrix,
-                              std::vector<PinMotions> pins) const {
+                              std::vector<SolvedGroup> solved) const {
   KeptState state{.table = &shared_->table,
                   .order = &base_.order,
                   .monitor = base_.options.monitor != nullptr
@@ -133,6 +136,7 @@ KeptState ElasticSystem::keep(const TetMesh& mesh,
                   .laws = std::move(laws),
                   .tolerance = base_.options.tolerance,
                   .max_iterations = base_.options.max_iterations,
+                  .patience = patience(),
                   .groups = {},
                   .names = {},
                   .matrix = std::move(matrix),
@@ -144,7 +148,7 @@ KeptState ElasticSystem::keep(const TetMesh& mesh,
         {.cases = group.cases,
          .restraints = supports::make_restraints(
              mesh, load_cases[group.cases.front()], base_.order),
-         .pins = std::move(pins[g]),
+         .solved = std::move(solved[g]),
          .preconditioner = group.preconditioner.get()});
   }
   state.names.reserve(load_cases.size());

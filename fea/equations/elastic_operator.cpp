@@ -80,7 +80,7 @@ ElasticOperator ElasticSystem::operator_at(
                      .monitor = base_.options.monitor != nullptr
                                     ? *base_.options.monitor
                                     : silent_monitor(),
-                     .second_chance = multigrid_});
+                     .patience = patience()});
   result.pin_motions = find_pin_motions(result.x, solver);
   return result;
 }

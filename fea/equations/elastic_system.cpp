@@ -135,6 +135,16 @@ void ElasticSystem::build_multigrid(
   }
 }
 
+int ElasticSystem::patience() const {
+  if (!multigrid_) {
+    return solver::kFactorPatience;
+  }
+  return base_.options.solver == SolverKind::Multigrid
+             ? base_.options.max_iterations
+             : solver::multigrid_patience(
+                   supports::free_unknowns(groups_.front().restraints));
+}
+
 std::optional<Failure> ElasticSystem::assemble(
     const TetMesh& mesh, const std::vector<element::ElasticLaw>& laws,
     solver::BlockMatrix<double>& matrix) const {
@@ -150,7 +160,7 @@ std::optional<Failure> ElasticSystem::assemble(
 ElasticSolution ElasticSystem::solve(
     const TetMesh& mesh, const std::vector<loads::LoadCase>& load_cases,
     const RegionMaterials& regions, const solver::BlockMatrix<double>& matrix,
-    const ElasticSolution* start, std::vector<PinMotions>* pins) const {
+    const ElasticSolution* start, std::vector<SolvedGroup>* solved) const {
   const Timer timer;
   ElasticSolution result;
   result.displacements.resize(load_cases.size());
@@ -194,14 +204,15 @@ ElasticSolution ElasticSystem::solve(
                        .monitor = base_.options.monitor != nullptr
                                       ? *base_.options.monitor
                                       : silent_monitor(),
-                       .second_chance = multigrid_});
+                       .patience = patience()});
     PinMotions motions = solve_group(design, group.cases,
                                      plain ? matrix : sprung, solver, result);
-    if (solver.took_factor()) {
+    if (solver.factor() != nullptr && multigrid_) {
       result.report.solver = "cholmod after multigrid";
     }
-    if (pins != nullptr) {
-      pins->push_back(std::move(motions));
+    if (solved != nullptr) {
+      solved->push_back(
+          {.pins = std::move(motions), .factor = solver.factor()});
     }
   }
   // With temperatures the energy is int s : C^-1 : s / 2, not f . u / 2.

@@ -33,21 +33,21 @@ class ElasticSystem {
                                   const std::vector<element::ElasticLaw>& laws,
                                   solver::BlockMatrix<double>& matrix) const;
 
-  /// Solves all load cases; `start`: a solution to begin from, or null. `pins`,
-  /// if not null, is given what keep() takes.
+  /// Solves all load cases; `start`: a solution to begin from, or null.
+  /// `solved`, if not null, is given what keep() takes.
   ElasticSolution solve(const TetMesh& mesh,
                         const std::vector<loads::LoadCase>& load_cases,
                         const RegionMaterials& regions,
                         const solver::BlockMatrix<double>& matrix,
                         const ElasticSolution* start,
-                        std::vector<PinMotions>* pins = nullptr) const;
+                        std::vector<SolvedGroup>* solved = nullptr) const;
 
   /// What adjoints need of a design that was solved.
   KeptState keep(const TetMesh& mesh,
                  const std::vector<loads::LoadCase>& load_cases,
                  std::vector<element::ElasticLaw> laws,
                  solver::BlockMatrix<double> matrix,
-                 std::vector<PinMotions> pins) const;
+                 std::vector<SolvedGroup> solved) const;
 
   /// See ElasticModel::operator_at().
   ElasticOperator operator_at(
@@ -95,6 +95,8 @@ class ElasticSystem {
     Points x;                      // of solver's nodes [length]
     std::vector<VectorX> f;        // of all load cases [force]
   };
+  /// Of the preconditioners (HeldEquations).
+  int patience() const;
   PinMotions solve_group(const Design& design, const std::vector<int>& cases,
                          const solver::BlockMatrix<double>& matrix,
                          HeldSolver& solver, ElasticSolution& result) const;

@@ -7,37 +7,44 @@
 namespace meniscus::equations {
 
 std::vector<solver::CgColumn> HeldSolver::solve_with(
-    const solver::Preconditioner& preconditioner, const std::vector<VectorX>& f,
-    std::vector<VectorX>& u) const {
+    const solver::Preconditioner& preconditioner, int max_iterations,
+    const std::vector<VectorX>& f, std::vector<VectorX>& u) const {
   return solver::conjugate_gradients({.pattern = in_.pattern,
                                       .matrix = in_.matrix,
                                       .preconditioner = preconditioner,
                                       .freedom = in_.restraints.freedom,
                                       .tolerance = in_.tolerance,
-                                      .max_iterations = in_.max_iterations,
+                                      .max_iterations = max_iterations,
                                       .monitor = in_.monitor},
                                      f, u);
 }
 
 std::vector<solver::CgColumn> HeldSolver::solve_few(
     const std::vector<VectorX>& f, std::vector<VectorX>& u) {
-  std::vector<solver::CgColumn> columns = solve_with(in_.preconditioner, f, u);
-  // A direction of negative curvature means a cycle that is not positive.
-  const bool lost = std::any_of(
-      columns.begin(), columns.end(), [](const solver::CgColumn& column) {
-        return column.end == solver::CgEnd::NotPositive;
-      });
-  if (lost && in_.second_chance &&
-      supports::free_unknowns(in_.restraints) <= solver::kSecondChance) {
+  const int unknowns = supports::free_unknowns(in_.restraints);
+  if (unknowns > solver::kSecondChance) {
+    return solve_with(in_.preconditioner, in_.max_iterations, f, u);
+  }
+  if (factor_ == nullptr) {
+    std::vector<solver::CgColumn> columns = solve_with(
+        in_.preconditioner, std::min(in_.max_iterations, in_.patience), f, u);
+    // A direction of negative curvature means a cycle that is not positive.
+    const bool slow = in_.patience < in_.max_iterations;
+    const bool lost = std::any_of(
+        columns.begin(), columns.end(), [&](const solver::CgColumn& column) {
+          return column.end == solver::CgEnd::NotPositive ||
+                 (slow && column.end == solver::CgEnd::TooManyIterations);
+        });
+    if (!lost) {
+      return columns;
+    }
     for (VectorX& v : u) {
       v.setZero();
     }
-    columns = solve_with(
-        *solver::make_direct(in_.pattern, in_.matrix, in_.restraints.freedom),
-        f, u);
-    took_factor_ = true;
+    factor_ =
+        solver::make_direct(in_.pattern, in_.matrix, in_.restraints.freedom);
   }
-  return columns;
+  return solve_with(*factor_, in_.max_iterations, f, u);
 }
 
 std::vector<solver::CgColumn> HeldSolver::solve(const std::vector<VectorX>& f,

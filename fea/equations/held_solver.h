@@ -1,6 +1,7 @@
 /// The equations of a design on the directions that supports leave free.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "core/monitor.h"
@@ -18,9 +19,9 @@ struct HeldEquations {
   double tolerance = 1e-10;
   int max_iterations = 400;
   Monitor& monitor;
-  /// A factor in double precision where a preconditioner in single precision
-  /// is lost, on supports that hardly hold.
-  bool second_chance = true;
+  /// Iterations after which a factor of this matrix takes over, up to
+  /// solver::kSecondChance unknowns; not where it is max_iterations or more.
+  int patience = 0;
 };
 
 class HeldSolver {
@@ -37,17 +38,20 @@ class HeldSolver {
   VectorX product(const VectorX& v) const;
 
   const supports::Restraints& restraints() const { return in_.restraints; }
-  bool took_factor() const { return took_factor_; }
+  /// Of the matrix, where the preconditioner did not serve; else null.
+  std::shared_ptr<const solver::Preconditioner> factor() const {
+    return factor_;
+  }
 
  private:
   std::vector<solver::CgColumn> solve_with(
-      const solver::Preconditioner& preconditioner,
+      const solver::Preconditioner& preconditioner, int max_iterations,
       const std::vector<VectorX>& f, std::vector<VectorX>& u) const;
   std::vector<solver::CgColumn> solve_few(const std::vector<VectorX>& f,
                                           std::vector<VectorX>& u);
 
   const HeldEquations in_;
-  bool took_factor_ = false;
+  std::shared_ptr<const solver::Preconditioner> factor_;
 };
 
 }  // namespace meniscus::equations

@@ -1,6 +1,7 @@
 /// What adjoints need of a solved design (internal to ElasticModel).
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -14,13 +15,20 @@
 
 namespace meniscus::equations {
 
+/// What a solve leaves for the adjoints of a group of load cases.
+struct SolvedGroup {
+  PinMotions pins;
+  std::shared_ptr<const solver::Preconditioner>
+      factor;  // the design's, or null
+};
+
 /// In the solver's numbering.
 struct KeptState {
   /// Load cases that are held alike.
   struct Group {
     std::vector<int> cases;
     supports::Restraints restraints;
-    PinMotions pins;
+    SolvedGroup solved;
     const solver::Preconditioner* preconditioner = nullptr;  // of the model
   };
 
@@ -32,6 +40,7 @@ struct KeptState {
   std::vector<element::ElasticLaw> laws;  // of the design
   double tolerance = 0.0;
   int max_iterations = 0;
+  int patience = 0;  // of the preconditioners
   std::vector<Group> groups;
   std::vector<std::string> names;      // of load cases
   solver::BlockMatrix<double> matrix;  // without springs

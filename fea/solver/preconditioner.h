@@ -24,9 +24,17 @@ class Preconditioner {
 /// Up to this many free unknowns a direct factor is as quick as multigrid.
 inline constexpr int kFactorUnknowns = 1000;
 
-/// Up to this many a factor in double precision (a minute, 2 GB) is tried where
-/// multigrid, in single precision, finds a matrix not positive definite.
+/// Up to this many a factor of the matrix itself in double precision (a minute,
+/// 2 GB) is tried where another preconditioner does not serve: multigrid in
+/// single precision that finds a matrix not positive definite, walls of thin
+/// elements, a base design too far away.
 inline constexpr int kSecondChance = 200000;
+
+/// Iterations after which that factor is the quicker way, at n unknowns: of
+/// multigrid one costs as n, a factor of a solid as n^2; of another design's
+/// factor one costs a part of a new factor.
+inline int multigrid_patience(int n) { return n > 10000 ? n / 200 : 50; }
+inline constexpr int kFactorPatience = 30;
 
 /// The Cholesky factor of the matrix itself.
 std::unique_ptr<Preconditioner> make_direct(const BlockPattern& pattern,

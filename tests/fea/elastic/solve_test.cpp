@@ -220,6 +220,35 @@ TEST(Multigrid, HoldsForThinWallsNearlyIncompressibleAndMixedMaterials) {
   }
 }
 
+TEST(Multigrid, AFactorTakesOverWhereWallsAreThinAndChange) {
+  const TetMesh wall =
+      shapes::straight_quadratic(shapes::brick({40.0, 40.0, 0.8}, 14, 14, 1));
+  TetMesh thin = wall;
+  for (Vec3& x : thin.nodes) {
+    x.z() *= 0.3 + 0.4 * x.x() / 40.0;
+  }
+  const elastic::ElasticModel slow(
+      wall, {parts::steel()}, two_cases(),
+      {.solver = equations::SolverKind::Multigrid});
+  const elastic::ElasticModel model(wall, {parts::steel()}, two_cases(), {});
+  const elastic::ElasticModel own(thin, {parts::steel()}, two_cases(), {});
+  ASSERT_GT(slow.base_solution().report.iterations, 60);
+  EXPECT_EQ(model.base_solution().report.solver, "cholmod");
+  equations::ElasticState state;
+  const equations::ElasticSolution found =
+      model.solve(thin, two_cases(), &state);
+  ASSERT_FALSE(found.failure) << found.failure->message;
+  ASSERT_FALSE(own.base_solution().failure);
+  EXPECT_LE(found.report.iterations, 30);
+  EXPECT_LE(
+      difference(found.displacements[1], own.base_solution().displacements[1]),
+      kSolvers);
+  const equations::AdjointSolution adjoint = model.solve_adjoint(
+      state, 1, {loads::nodal_forces(thin, two_cases()[1], {parts::steel()})});
+  ASSERT_FALSE(adjoint.failure) << adjoint.failure->message;
+  EXPECT_LE(difference(adjoint.lambda[0], found.displacements[1]), kSolvers);
+}
+
 TEST(Multigrid, OtherMaterialsThanTheBasesAreSolvedByItsPreconditioner) {
   TetMesh mesh = bar(2, 3);
   for (int e = 0; e < mesh.element_count(); e += 2) {
