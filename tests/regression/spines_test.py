@@ -167,6 +167,31 @@ class Spines(ProgramTest):
                                        resolution=5.0), name=f"net_{trial}")
             self.assertEqual(found["film"]["index"], 0, trial)
 
+    def test_suction_keeps_arms_side_by_side_from_one_web(self):
+        # Two rods four radii apart that a third one joins in the middle.
+        radius, length, apart = 10.0, 160.0, 40.0
+        rims = {}
+        for name, side in (("one", -0.5), ("two", 0.5)):
+            for end, x, out in (("low", 0, -1), ("high", length, 1)):
+                rims[f"{name}_{end}"] = circle(
+                    f"{name}_{end}", [x, side * apart, 0], [out, 0, 0], radius)
+        ends = {"one": [[0, -20, 0], [length, -20, 0]],
+                "two": [[0, 20, 0], [length, 20, 0]],
+                "bridge": [[80, -20, 0], [80, 20, 0]]}
+        rods = math.pi * radius ** 2 * 2 * length * 7.85e-9
+        masses = {}
+        for suction in (0.0, 0.2):
+            text = part("Two rods", rims, [
+                spine(name, points, radius, f"tension = {1 + radius * suction}")
+                for name, points in ends.items()], resolution=5.0)
+            text = text.replace('material = "steel"\n',
+                                f'material = "steel"\npressure = {-suction}\n',
+                                1)
+            masses[suction] = self.run_case(
+                text, "--no-report")["responses"]["mass"] / rods
+        self.assertGreater(masses[0.0], 1.8)
+        self.assertLess(masses[0.2], 1.2)
+
     def test_a_spine_is_proposed_for_an_arm_that_cannot_stand(self):
         def rod(length):
             rims = {"low": circle("low", [0, 0, 0], [0, 0, -1], 10),

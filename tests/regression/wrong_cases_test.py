@@ -28,6 +28,7 @@ COARSE = {
     "bell_crank": (16, 16),
     "spine_crank": (9, 9),
     "fuselage": (200, 200),
+    "torque_tube": (10, 10), "tapered_cantilever": (24, 6),
 }
 # The mistakes that a case has no room for, and why.
 NO_ROOM = {
@@ -47,6 +48,9 @@ NO_ROOM = {
     "spine_crank": {"thick": "no walls", "member": "no family"},
     "h_beam_casting": {"member": "no family"},
     "ge_bracket": {"thick": "no walls", "member": "no family"},
+    "torque_tube": {"crossing": "two rings face each other at any length",
+                    "member": "no family"},
+    "tapered_cantilever": {"thick": "no walls", "member": "no family"},
 }
 KINDS = ("swapped", "open", "crossing", "thick", "member")
 
@@ -298,6 +302,44 @@ WRONG = {
               (r"'small_side'.*crosses or overlaps another with facet \d+ "
                r"\('big_end'\) at \(.*\): " + MEET,),
               command="run case.toml --set study.kind=analyse --set low=20"),
+    ],
+    "torque_tube": [
+        Harmless("the film's curves",
+                 {'["low", "high"]': '["high", "low"]'}),
+        Wrong("swapped", "the ends of the load", {
+            '[{ on = "skin/rim:high", by': '[{ on = "skin/rim:hihg", by'}, 2,
+              (r"case\.toml:{line}: there is no surface 'skin/rim:hihg'; did "
+               r"you mean 'skin/rim:high'",), "loads = ["),
+        Wrong("open", "the gas without an end",
+              {'["skin", "low_end", "high_end"]': '["skin", "low_end"]'}, 2,
+              not_closed("gas", "high", "add 'high_end'"),
+              'enclosed_by = ["skin"'),
+        Wrong("thick", "walls thicker than the ring's radius", {}, 3,
+              (UNSOUND,),
+              command="run case.toml --set study.kind=analyse "
+                      "--set design.wall.initial=120 "
+                      "--set design.wall.bounds=[1,150]"),
+    ],
+    "tapered_cantilever": [
+        Harmless("a film's two curves",
+                 {'["rim_{i}", "rim_{i + 1}"]': '["rim_{i + 1}", "rim_{i}"]'}),
+        Wrong("swapped", "the wall of another chamber",
+              {'["skin_{i}", "wall_{i}", "wall_{i + 1}"]':
+               '["skin_{i}", "wall_{i}", "wall_{13 - i}"]'}, 2,
+              (r"case\.toml:{line}: body 'chamber_1' is not closed at curve "
+               r"'rim_2'",), 'enclosed_by = ["skin'),
+        Wrong("open", "chambers without a wall",
+              {'["skin_{i}", "wall_{i}", "wall_{i + 1}"]':
+               '["skin_{i}", "wall_{i}"]'}, 2,
+              not_closed("chamber_1", "rim_2", "add 'wall_2'"),
+              'enclosed_by = ["skin'),
+        Wrong("crossing", "a chamber that turns back", {
+            'center = [0, 0, "length * (1 - ((chambers + 1 - i) / '
+            'chambers)^1.5)"]':
+            'center = [0, 0, "length * (1 - ((chambers + 1 - i) / '
+            'chambers)^1.5) - 300 * (i == 13)"]'}, 3,
+              (r"\('skin_12'\)|'skin_12'",),
+              command="run case.toml --set study.kind=analyse"),
     ],
     "strut_family": [
         Harmless("both films' curves",
