@@ -23,6 +23,7 @@ constexpr double kNear = 0.5;   // of a rim's plane [radii]
 constexpr double kCell = 0.5;   // of the lattice [radii]
 constexpr double kBall = 1.2;   // about samples [radii]
 constexpr double kReach = 3.0;  // of what a rim cuts off [radii]
+constexpr std::array<double, 5> kWidths = {1.0, 1.05, 1.1, 1.2, 1.3};
 
 /// The middle of a rim and its vector area.
 struct RimPlane {
@@ -68,26 +69,6 @@ struct Cut {
   }
 };
 
-/// The cylinder of a bore, from rim to rim and beyond.
-class BoreCut {
- public:
-  BoreCut(const Points& low, const Points& high)
-      : low_(low), high_(high), low_plane_(low), high_plane_(high) {}
-
-  bool cuts(const Vec3& p) const {
-    const Vec3 middle = 0.5 * (low_plane_.middle + high_plane_.middle);
-    const double reach =
-        0.5 * (high_plane_.middle - low_plane_.middle).norm() +
-        kReach * std::max(low_plane_.radius, high_plane_.radius);
-    return (p - middle).norm() < reach && within(low_plane_, low_, p) &&
-           within(high_plane_, high_, p);
-  }
-
- private:
-  Points low_, high_;
-  RimPlane low_plane_, high_plane_;
-};
-
 struct SpineField {
   std::vector<films::Pole> poles;
   std::vector<double> tension;
@@ -110,6 +91,70 @@ struct SpineField {
     }
     return more > 0.0;
   }
+};
+
+/// The cylinder of a bore, from rim to rim and on as far as the liquid about it
+/// swells: what passes over the bore at a distance is left alone.
+class BoreCut {
+ public:
+  BoreCut(const Points& low, const Points& high, const SpineField& field,
+          double step)
+      : low_(low), high_(high), low_plane_(low), high_plane_(high) {
+    axis_ = (high_plane_.middle - low_plane_.middle).normalized();
+    widen(field);
+    before_ = swell(low_, low_plane_, -axis_, field, step);
+    after_ = swell(high_, high_plane_, axis_, field, step);
+  }
+
+  bool cuts(const Vec3& p) const {
+    const double along = (p - low_plane_.middle).dot(axis_);
+    const Vec3 on_axis = low_plane_.middle + along * axis_;
+    const Vec3 narrowed = on_axis + (p - on_axis) / width_;
+    return along > -before_ && (p - high_plane_.middle).dot(axis_) < after_ &&
+           within(low_plane_, low_, narrowed) &&
+           within(high_plane_, high_, narrowed);
+  }
+
+ private:
+  /// Where the liquid halfway through is wider than the bore, a cut as wide as
+  /// the bore would miss it and leave the two rims joined there.
+  void widen(const SpineField& field) {
+    const Vec3 middle = 0.5 * (low_plane_.middle + high_plane_.middle);
+    for (const double width : kWidths) {
+      const bool wet =
+          std::all_of(low_.begin(), low_.end(), [&](const Vec3& p) {
+            const Vec3 d = p - low_plane_.middle;
+            return field.level(middle + width * (d - axis_.dot(d) * axis_)) >
+                   0.0;
+          });
+      if (wet) {
+        width_ = width;
+        return;
+      }
+    }
+  }
+
+  /// How far beyond a rim there is liquid over its points or its middle.
+  static double swell(const Points& rim, const RimPlane& plane, const Vec3& out,
+                      const SpineField& field, double step) {
+    const double most = kReach * plane.radius;
+    double far = 0.0;
+    const auto wet = [&](const Vec3& x) {
+      return field.level(x + far * out) > 0.0;
+    };
+    while (far < most &&
+           (wet(plane.middle) || std::any_of(rim.begin(), rim.end(), wet))) {
+      far += step;
+    }
+    return far + step;
+  }
+
+  Points low_, high_;
+  RimPlane low_plane_, high_plane_;
+  Vec3 axis_;
+  double width_ = 1.0;  // of the cut, over that of the bore
+  double before_ = 0.0;
+  double after_ = 0.0;
 };
 
 /// Closed walks along the border, in its direction. Throws InvalidInput where
@@ -234,7 +279,8 @@ struct SpineSite {
       cuts.push_back(
           {static_cast<int>(k), plane.middle, Vec3::Zero(), plane.radius});
       if (rims[k].bore > static_cast<int>(k)) {
-        bores.emplace_back(rims[k].points, rims[rims[k].bore].points);
+        bores.emplace_back(rims[k].points, rims[rims[k].bore].points, field,
+                           kCell * thinnest);
       }
     }
   }

@@ -193,6 +193,29 @@ TEST(SpineFilms, BoresInThinEyesAreNoEndsOfSpines) {
   settled(frozen::FilmModel::freeze(system, {.edge = 3.0}));
 }
 
+// The liquid leaves the bore halfway between its rims, on one side: a cut as
+// wide as the bore would leave its rims joined there.
+TEST(SpineFilms, AnEyeMayBeWiderThanItsBore) {
+  for (const double wider : {0.0, 0.3, 0.6}) {
+    films::FilmSystem system =
+        spined({}, {curves::Circle{Vec3(0, -3, 0), -Vec3::UnitY(), 10.0},
+                    curves::Circle{Vec3(0, 3, 0), Vec3::UnitY(), 10.0},
+                    curves::Circle{Vec3(60, 0, 0), Vec3::UnitX(), 4.0}});
+    system.caps = {{"bore", "rim_0", "rim_1"}, {"head", "rim_2"}};
+    system.bodies[0].enclosed_by = {"skin", "bore", "head"};
+    Points ring;
+    for (int k = 0; k <= 12; ++k) {
+      const double a = 2.0 * kPi * k / 12.0;
+      ring.emplace_back(14.0 * std::cos(a) - wider, 0.0, 14.0 * std::sin(a));
+    }
+    system.spines = {arm("eye", ring, {4.2}, true),
+                     arm("arm", {Vec3(17, 0, 0), Vec3(60, 0, 0)}, {4.0})};
+    const frozen::FilmModel model =
+        frozen::FilmModel::freeze(system, {.edge = 2.5});
+    EXPECT_EQ(settled(model).report.index, 0) << wider;
+  }
+}
+
 TEST(SpineFilms, WallsAndPlanesOfSymmetryAreRefused) {
   films::FilmSystem system = tube(60.0, 10.0);
   system.caps.push_back({"cut", ""});
