@@ -24,7 +24,14 @@ constexpr int kPressureIterations = 12;
 constexpr double kThin = 10.0 * std::numbers::pi / 180.0;
 
 constexpr double kJunctionsRest = 1e-3;  // way in a step, over the mean edge
-constexpr int kPasses = 10;              // of averaging, a step at most
+// The Laplacian of a film that stands still already resists its own motion:
+// of a tube by T/R^2, so that this share of the spines' stiffness makes every
+// step stable, and more of it only slow.
+constexpr double kSpineShare = 0.6;
+constexpr double kSpinesRest = 0.1;    // way in a step, over the mean edge, at
+constexpr double kUsualChange = 1e-4;  // this change of energy
+constexpr double kProbe = 1e-3;        // x mean edge
+constexpr int kPasses = 10;            // of averaging, a step at most
 
 bool has_thin_facet(const films::FilmComplex& complex) {
   const SurfaceMesh& mesh = complex.mesh;
@@ -61,6 +68,11 @@ class Flow {
       facet_weight_.push_back(
           film ? std::max(targets_.tension[label], 0.1 * most) : 0.0);
     }
+    spined_ =
+        std::any_of(complex.quantities.begin(), complex.quantities.end(),
+                    [](const auto& q) {
+                      return q.kind == films::FilmQuantity::Kind::BodyPoles;
+                    });
     const energy::FilmSpace& space = energy_.space();
     for (std::size_t k = 0; k < space.walled().size(); ++k) {
       const int v = space.walled()[k];
@@ -96,6 +108,22 @@ class Flow {
     return most / energy_.mean_edge(x);
   }
 
+  bool is_spined() const { return spined_; }
+
+  /// Largest way along the film's normals since `old`, over the mean edge.
+  double normal_motion(const Points& old) const {
+    const Points normals = energy_.space().directions(old);
+    double most = 0.0;
+    for (const int v : movers_) {
+      const int first = energy_.space().first(v);
+      const Vec3 way = complex_.mesh.points[v] - old[v];
+      for (int r = 0; r < energy_.space().rank(v); ++r) {
+        most = std::max(most, std::abs(way.dot(normals[first + r])));
+      }
+    }
+    return most / energy_.mean_edge(old);
+  }
+
   bool has_unknowns() const { return energy_.unknowns() > 0; }
 
   bool at_volume() const {
@@ -121,6 +149,9 @@ class Flow {
     const bool hold = at_volume();
     const double before = energy();
     const Points old = complex_.mesh.points;
+    if (!find_forces()) {
+      return false;
+    }
     for (int attempt = 0; attempt < 6; ++attempt) {
       if (holds_up(before, hold) && !too_far(old)) {
         tau_ = std::min(most_tau_, 2.0 * tau_);
@@ -139,6 +170,50 @@ class Flow {
              return (complex_.mesh.points[v] - old[v]).squaredNorm() >
                     most_motion_ * most_motion_;
            });
+  }
+
+  /// Of the film as it is; false where a formula has no slope there.
+  bool find_forces() {
+    const Points& x = complex_.mesh.points;
+    stiffness_ = VectorX::Zero(static_cast<Eigen::Index>(movers_.size()));
+    try {
+      pull_ = energy_.gradient(x, targets_);
+    } catch (const ExpressionError&) {
+      return false;
+    }
+    try {
+      find_stiffness(x);
+    } catch (const ExpressionError&) {
+      // Beside the film a formula has no slope: steps may be short.
+    }
+    return true;
+  }
+
+  /// How much the spines' force on each mover grows against it as the film
+  /// moves along its normals; where it does not, or lines and walls hold the
+  /// mover, 0. Without it, steps longer than their own time overshoot.
+  /// The tensions' part of the difference is a film's Gaussian curvature.
+  void find_stiffness(const Points& x) {
+    if (!spined_) {
+      return;
+    }
+    const double way = kProbe * energy_.mean_edge(x);
+    const Points normals = energy_.space().directions(x);
+    const auto normal_of = [&](int v) {
+      return energy_.space().rank(v) == 1 ? normals[energy_.space().first(v)]
+                                          : Vec3(Vec3::Zero());
+    };
+    Points moved = x;
+    for (const int v : movers_) {
+      moved[v] += way * normal_of(v);
+    }
+    const Points after = energy_.gradient(moved, targets_);
+    for (std::size_t i = 0; i < movers_.size(); ++i) {
+      const int v = movers_[i];
+      const double rate = normal_of(v).dot(after[v] - pull_[v]) / way;
+      stiffness_[static_cast<Eigen::Index>(i)] =
+          kSpineShare * std::max(0.0, rate);
+    }
   }
 
   /// A step; false where it is to be taken back.
@@ -165,7 +240,7 @@ class Flow {
                                 energy::CotanWeights::Exact);
     const VectorX mass = lumped_area();
     for (int i = 0; i < n; ++i) {
-      laplace.inner.coeffRef(i, i) += mass[i] / tau_;
+      laplace.inner.coeffRef(i, i) += mass[i] / tau_ + stiffness_[i];
     }
     if (!factor_) {
       const bool plain = n == energy_.unknowns();
@@ -176,7 +251,7 @@ class Flow {
       return false;
     }
     Eigen::MatrixXd right(n, 3 * (1 + held));
-    right.leftCols<3>() = -rows_of(energy_.gradient(x, targets_));
+    right.leftCols<3>() = -rows_of(pull_);
     for (int b = 0; b < energy_.functionals(); ++b) {
       if (const double p = targets_.bodies[b].pressure.value_or(0.0);
           p != 0.0) {
@@ -325,6 +400,9 @@ class Flow {
   std::vector<int> bent_rims_;   // vertices
   std::vector<double> facet_weight_;
   std::vector<int> held_;
+  bool spined_ = false;
+  Points pull_;        // dE/dx where the step begins
+  VectorX stiffness_;  // per mover [force/length]
   std::optional<SymmetricFactor> factor_;
   double most_motion_ = 0.0;
   double tau_ = 0.0;
@@ -356,12 +434,20 @@ FlowReport flow_to_rest(films::FilmComplex& complex,
       break;
     }
     const bool junctions_rest = flow.junction_motion(before) <= kJunctionsRest;
+    // Spines hold each place by itself. The energy of a large film says nothing
+    // about one, and falls for ever while vertices slide along the film.
+    const bool places_rest =
+        flow.is_spined() &&
+        flow.normal_motion(before) <=
+            kSpinesRest * std::sqrt(options.energy_change / kUsualChange);
     for (int pass = 0; pass < kPasses && has_thin_facet(complex); ++pass) {
       groom::average_vertices(complex);
     }
     const double next = flow.energy();
+    const bool energy_rests =
+        std::abs(energy - next) <= options.energy_change * std::abs(energy);
     if (hold && junctions_rest &&
-        std::abs(energy - next) <= options.energy_change * std::abs(energy)) {
+        (flow.is_spined() ? places_rest : energy_rests)) {
       report.settled = true;
       break;
     }

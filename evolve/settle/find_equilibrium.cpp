@@ -28,6 +28,7 @@ namespace {
 constexpr int kLongRounds = 30;
 constexpr double kLongChange = 1e-8;
 constexpr double kLongMotion = 0.25;  // x edge, per step
+constexpr int kMendRounds = 4;        // of new facets where Newton stops
 constexpr int kPolishRounds = 2;      // of averaging and Newton at the end
 // Facets up to which a film is groomed, and factored directly, before nested
 // refinement goes on.
@@ -58,6 +59,15 @@ FilmState given_up(const films::FilmComplex& complex, const std::string& reason,
   return state;
 }
 
+void remesh(films::FilmComplex& complex, double edge) {
+  groom::remesh_films(
+      complex, {.edge = edge, .edge_field = films::graded_edge(complex, edge)});
+}
+
+bool is_not_found(const FilmState& state) {
+  return state.failure && state.failure->kind == FailureKind::FilmNotFound;
+}
+
 /// Coarse to fine over the edges edge x 2^k, k = levels..0. Empty when the
 /// film came near rest; else why not.
 std::string bring_near_by_levels(films::FilmComplex& complex,
@@ -70,9 +80,7 @@ std::string bring_near_by_levels(films::FilmComplex& complex,
       if (level < levels) {
         complex = groom::refine(complex).complex;
       }
-      groom::remesh_films(
-          complex,
-          {.edge = *edge, .edge_field = films::graded_edge(complex, *edge)});
+      remesh(complex, *edge);
     }
     std::string reason = bring_near(complex, edge, options.max_rounds, steps,
                                     {.monitor = options.settle.monitor});
@@ -116,8 +124,7 @@ FilmState settle_or_follow(films::FilmComplex& complex, double usual_neck,
                            const SettleOptions& options, int& steps) {
   const Points before = complex.mesh.points;
   FilmState state = settle_with_contacts(complex, usual_neck, options, steps);
-  if (!state.failure || state.failure->kind != FailureKind::FilmNotFound ||
-      complex.mesh.facets.size() > kDirect) {
+  if (!is_not_found(state) || complex.mesh.facets.size() > kDirect) {
     return state;
   }
   complex.mesh.points = before;
@@ -136,12 +143,25 @@ FilmState settle_and_polish(films::FilmComplex& complex,
                             const FindOptions& options, int& steps) {
   require_motion(complex);
   FilmState state;
+  int mended = 0;
   for (int round = 0; round <= kPolishRounds; ++round) {
     if (round > 0) {
       groom::equiangulate(complex);
       groom::average_vertices(complex);
     }
     state = settle_or_follow(complex, 0.0, options.settle, steps);
+    // Facets that fold before the film rests: new ones where it stands.
+    for (; options.edge && mended < kMendRounds && !is_settled(state) &&
+           state.failure->kind != FailureKind::FilmUnstable;
+         ++mended) {
+      remesh(complex, *options.edge);
+      if (!bring_near(complex, options.edge, 1, steps,
+                      {.monitor = options.settle.monitor})
+               .empty()) {
+        break;
+      }
+      state = settle_or_follow(complex, 0.0, options.settle, steps);
+    }
     if (!is_settled(state) || (!options.edge && options.refinements == 0)) {
       break;
     }

@@ -3,8 +3,10 @@
 of them, exact gradients by points and radii, mistakes told by line."""
 import json
 import math
+import pathlib
 import random
 import re
+import tomllib
 import unittest
 
 from program import ProgramTest
@@ -191,6 +193,61 @@ class Spines(ProgramTest):
                 text, "--no-report")["responses"]["mass"] / rods
         self.assertGreater(masses[0.0], 1.8)
         self.assertLess(masses[0.2], 1.2)
+
+    def test_a_frame_of_arms_stands_wherever_it_is_drawn(self):
+        # Eight arms between two eyes and four washers, close beside each other:
+        # half of such starts used to end far from rest, or on folded facets.
+        frame = pathlib.Path(__file__).parent / "frame.toml"
+        chance = random.Random(11)
+        for number in range(3):
+            moved = []
+            for i in range(1, 9) if number > 0 else ():
+                for k in (1, 2):
+                    for c in (1, 2, 3):
+                        knee = self.frame_knee(frame, i, k, c)
+                        moved += ["--set", f"knee[{i},{k},{c}]="
+                                  f"{knee + chance.uniform(-1, 1):.6g}"]
+            done = self.call("evolve", frame, "--out", f"frame_{number}",
+                             "--no-pictures", *moved, timeout=300)
+            self.expect(done, 0, "film: stable")
+
+    def frame_knee(self, frame, *at):
+        knee = tomllib.loads(frame.read_text())["design"]["knee"]["initial"]
+        for k in at:
+            knee = knee[k - 1]
+        return knee
+
+    def test_an_arm_may_pass_over_a_bore(self):
+        # From the eye around it, up and across its axis at three radii.
+        rims = {"top": circle("top", [0, 0, 8], [0, 0, 1], 8),
+                "under": circle("under", [0, 0, 0], [0, 0, -1], 8),
+                "end": circle("end", [-40, 0, 32], [-1, 0, 0], 5)}
+        text = part("An arm over a bore", rims, [
+            """
+[spines.eye]
+points = [{ at = ["13 * cos(i * pi / 4)", "13 * sin(i * pi / 4)", 4], repeat = 9 }]
+radius = 6
+""", spine("arm", [[13, 0, 4], [24, 0, 16], [14, 0, 30], [-40, 0, 32]], 5)],
+                    resolution=3.0)
+        bore = """
+[solids.bore]
+kind = "ring"
+curve = "top"
+inner = "under"
+"""
+        for pad in ("top", "under"):
+            text = text.replace(f"""
+[solids.{pad}_pad]
+kind = "cap"
+curve = "{pad}"
+""", "")
+        text = text.replace('"top_pad", "under_pad"', '"bore"').replace(
+            '"top_pad"', '"bore"').replace("[films.skin]", bore + "[films.skin]")
+        found = self.run_case(text, "--no-report")
+        self.assertEqual(found["film"]["index"], 0)
+        # An eye of 6 mm about 13 mm without its bore, and 90 mm of arm.
+        self.assertLess(abs(found["responses"]["mass"] / 7.85e-9 / 15000 - 1),
+                        0.4)
 
     def test_a_spine_is_proposed_for_an_arm_that_cannot_stand(self):
         def rod(length):
