@@ -185,8 +185,14 @@ void add_fillets(const FilletEntry& fillet, const CaseValues& values,
   }
 }
 
-/// Curves with fillets are cut so finely that their arcs have some facets.
+/// Curves are cut as finely as they ask; those with fillets so that their arcs
+/// have some facets.
 void refine_curves(const Case& input, films::FilmSystem& system) {
+  for (std::size_t k = 0; k < input.curves.size(); ++k) {
+    if (const double pieces = input.curves[k].pieces; pieces > 0.0) {
+      system.curves[k].fineness = std::min(1.0, pieces / input.resolution.fea);
+    }
+  }
   constexpr double kPiece = 1.0 / 3.0;  // of the radius: four to a quarter turn
   for (const films::FilletSpec& fillet : system.fillets) {
     for (curves::Curve& curve : system.curves) {

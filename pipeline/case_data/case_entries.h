@@ -111,7 +111,8 @@ struct CurveEntry {
   std::vector<PathPoint> points;   // of polygon, spline, polyline; or
   std::vector<Vec3> fixed_points;  // of polygon and spline: from a file
   CopyEntry copy;
-  int feature = -1;  // index of the feature, and of its curves
+  double pieces = 0.0;  // length that it is cut into [length]; 0: the films'
+  int feature = -1;     // index of the feature, and of its curves
   int of_feature = -1;
   SourceLine line = 0;
 };

@@ -18,31 +18,35 @@ const std::vector<CurveRow>& curve_kinds() {
   static const std::vector<CurveRow> kinds = {
       {"circle",
        Kind::Circle,
-       {{"center", "normal", "radius"}, {}},
+       {{"center", "normal", "radius"}, {"pieces"}},
        case_data::kWithNext},
       {"ellipse",
        Kind::Ellipse,
-       {{"center", "normal", "axis", "radius_1", "radius_2"}, {}},
+       {{"center", "normal", "axis", "radius_1", "radius_2"}, {"pieces"}},
        case_data::kWithNext},
       {"rectangle",
        Kind::Rectangle,
-       {{"center", "normal", "axis", "width", "height"}, {"corner_radius"}},
+       {{"center", "normal", "axis", "width", "height"},
+        {"corner_radius", "pieces"}},
        ""},
-      {"polygon", Kind::Polygon, {{"points"}, {}}, "straight sides"},
-      {"spline", Kind::Spline, {{"points"}, {}}, "smooth through points"},
+      {"polygon", Kind::Polygon, {{"points"}, {"pieces"}}, "straight sides"},
+      {"spline",
+       Kind::Spline,
+       {{"points"}, {"pieces"}},
+       "smooth through points"},
       {"polyline",
        Kind::Polyline,
-       {{"points"}, {}},
+       {{"points"}, {"pieces"}},
        "straight sides and circular arcs"},
       {"file",
        Kind::Spline,  // or what the file holds
-       {{"file"}, {"as", "edge", "face"}},
+       {{"file"}, {"as", "edge", "face", "pieces"}},
        "points from a file"},
       {"copy",
        Kind::Copy,
        {{"of"},
         {"offset", "scale", "scales", "mirror", "rotate", "axis", "about",
-         "move"}},
+         "move", "pieces"}},
        "another curve offset, scaled, mirrored, turned, moved"}};
   return kinds;
 }
@@ -142,6 +146,9 @@ case_data::CurveEntry read_curve(CaseContext& context, const CaseTable& table,
   if (!kind) {
     return curve;
   }
+  if (table.has("pieces")) {
+    curve.pieces = constant_above(context, table, "pieces", 0.0, 0.0);
+  }
   const CurveRow& row = case_data::row_named(curve_kinds(), *kind);
   table.check_kind(*kind, row.keys);
   curve.kind = row.kind;
@@ -228,6 +235,10 @@ TableSpec curve_table() {
         "number: 7, \"rim\", [3, 4]; or"},
        {"face", K::NamesOrNumbers, D::None, false,
         "of a STEP file: the face whose outer rim it is, by name or number"},
+       {"pieces", K::Constant, D::Length, false,
+        "edges along it, where stress is to be resolved: films and elements "
+        "grow from there by 0.4 of the distance; at most resolution.fea, which "
+        "it is when left out"},
        {"of", K::Name, D::None, false, "of copy: a curve that stands above"},
        {"offset", K::Quantity, D::Length, false,
         "of copy: outwards in the curve's plane, below 0 inwards; corners "

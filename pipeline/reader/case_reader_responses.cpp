@@ -16,18 +16,6 @@
 
 namespace meniscus::reader {
 
-double constant_above(CaseContext& context, const CaseTable& table,
-                      const char* key, double above, double standard) {
-  const double value = table.constant(key).value_or(standard);
-  if (value > above) {
-    return value;
-  }
-  context.problems.add(table.line(key),
-                       fmt::format("{}.{} is {:g}; it must be above {:g}",
-                                   table.path(), key, value, above));
-  return standard;
-}
-
 bool takes_load_case(const case_data::ResponseEntry& entry) {
   const std::vector<std::string>& keys =
       case_data::row_of(entry.kind).keys.optional;

@@ -40,10 +40,6 @@ Value read_named(CaseContext& context, const CaseTable& table, const char* key,
   return rows.front().value;
 }
 
-/// A constant above `above`; `standard` without the key or when it is wrong.
-double constant_above(CaseContext& context, const CaseTable& table,
-                      const char* key, double above, double standard);
-
 /// Its kind has the key `load_case`.
 bool takes_load_case(const case_data::ResponseEntry& entry);
 

@@ -198,6 +198,18 @@ void check_name(CaseContext& context, const std::string& name,
   }
 }
 
+double constant_above(CaseContext& context, const CaseTable& table,
+                      const char* key, double above, double standard) {
+  const double value = table.constant(key).value_or(standard);
+  if (value > above) {
+    return value;
+  }
+  context.problems.add(table.line(key),
+                       fmt::format("{}.{} is {:g}; it must be above {:g}",
+                                   table.path(), key, value, above));
+  return standard;
+}
+
 std::vector<CaseTable> named_tables(CaseContext& context,
                                     const toml::table& root,
                                     const char* table) {

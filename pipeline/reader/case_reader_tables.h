@@ -153,6 +153,10 @@ loads::Surfaces surfaces_on(CaseContext& context, const CaseTable& table,
 void read_load_cases(CaseContext& context, const toml::table& root,
                      case_data::Case& result);
 
+/// A constant above `above`; `standard` without the key or when it is wrong.
+double constant_above(CaseContext& context, const CaseTable& table,
+                      const char* key, double above, double standard);
+
 /// The load case that `key` names; the first when left out or wrong.
 int index_of_load_case(CaseContext& context, const CaseTable& table,
                        const case_data::Case& result,

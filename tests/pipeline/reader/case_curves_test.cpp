@@ -329,5 +329,51 @@ fea = 0.1
   }
 }
 
+// Edges along the rim are as long as its pieces, those far from it as long as
+// resolution.fea; pieces longer than that change nothing.
+TEST(CaseCurves, AreCutIntoPieces) {
+  const auto edges = [](const std::string& pieces) {
+    const case_data::Case input =
+        case_of(disk("[curves.rim]\nkind = \"circle\"\ncenter = [0, 0, 0]\n"
+                     "normal = [0, 0, 1]\nradius = 8\n" +
+                     pieces));
+    const films::FilmSystem system =
+        case_data::evaluate(input, case_data::initial_design(input))
+            .film_system;
+    const frozen::FilmModel model =
+        frozen::FilmModel::freeze(system, {.edge = 1.0, .refinements = 0});
+    EXPECT_FALSE(model.reference().failure);
+    const SurfaceMesh mesh = model.fine_mesh(model.reference().points);
+    std::array<double, 2> longest = {0.0, 0.0};  // at the rim, in the middle
+    for (const Triangle& t : mesh.facets) {
+      for (int k = 0; k < 3; ++k) {
+        const Vec3& a = mesh.points[t[k]];
+        const Vec3& b = mesh.points[t[(k + 1) % 3]];
+        const double far = std::min(a.norm(), b.norm());
+        if (far > 7.99) {
+          longest[0] = std::max(longest[0], (a - b).norm());
+        } else if (std::max(a.norm(), b.norm()) < 4.0) {
+          longest[1] = std::max(longest[1], (a - b).norm());
+        }
+      }
+    }
+    return longest;
+  };
+  const std::array<double, 2> plain = edges("");
+  const std::array<double, 2> fine = edges("pieces = 0.25\n");
+  EXPECT_NEAR(plain[0], 1.0, 0.1);
+  EXPECT_NEAR(fine[0], 0.25, 0.025);
+  EXPECT_GT(fine[1], 0.6);
+  EXPECT_EQ(edges("pieces = 3\n"), plain);
+}
+
+TEST(CaseCurves, PiecesAreLengthsAboveZero) {
+  EXPECT_THAT(
+      problems_of(disk("[curves.rim]\nkind = \"circle\"\ncenter = [0, 0, 0]\n"
+                       "normal = [0, 0, 1]\nradius = 8\npieces = -1\n")),
+      ElementsAre(HasSubstr("case.toml:16: curves.rim.pieces is -1; it must "
+                            "be above 0")));
+}
+
 }  // namespace
 }  // namespace meniscus::case_curves_test
