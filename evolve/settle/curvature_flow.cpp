@@ -28,10 +28,10 @@ constexpr double kJunctionsRest = 1e-3;  // way in a step, over the mean edge
 // of a tube by T/R^2, so that this share of the spines' stiffness makes every
 // step stable, and more of it only slow.
 constexpr double kSpineShare = 0.6;
-constexpr double kSpinesRest = 0.1;    // way in a step, over the mean edge, at
-constexpr double kUsualChange = 1e-4;  // this change of energy
-constexpr double kProbe = 1e-3;        // x mean edge
-constexpr int kPasses = 10;            // of averaging, a step at most
+// Way in a step, over the mean edge, at the usual change of energy.
+constexpr double kSpinesRest = 0.1;
+constexpr double kProbe = 1e-3;  // x mean edge
+constexpr int kPasses = 10;      // of averaging, a step at most
 
 bool has_thin_facet(const films::FilmComplex& complex) {
   const SurfaceMesh& mesh = complex.mesh;
@@ -439,7 +439,8 @@ FlowReport flow_to_rest(films::FilmComplex& complex,
     const bool places_rest =
         flow.is_spined() &&
         flow.normal_motion(before) <=
-            kSpinesRest * std::sqrt(options.energy_change / kUsualChange);
+            kSpinesRest *
+                std::sqrt(options.energy_change / FlowOptions().energy_change);
     for (int pass = 0; pass < kPasses && has_thin_facet(complex); ++pass) {
       groom::average_vertices(complex);
     }

@@ -64,10 +64,6 @@ void remesh(films::FilmComplex& complex, double edge) {
       complex, {.edge = edge, .edge_field = films::graded_edge(complex, edge)});
 }
 
-bool is_not_found(const FilmState& state) {
-  return state.failure && state.failure->kind == FailureKind::FilmNotFound;
-}
-
 /// Coarse to fine over the edges edge x 2^k, k = levels..0. Empty when the
 /// film came near rest; else why not.
 std::string bring_near_by_levels(films::FilmComplex& complex,
@@ -124,7 +120,8 @@ FilmState settle_or_follow(films::FilmComplex& complex, double usual_neck,
                            const SettleOptions& options, int& steps) {
   const Points before = complex.mesh.points;
   FilmState state = settle_with_contacts(complex, usual_neck, options, steps);
-  if (!is_not_found(state) || complex.mesh.facets.size() > kDirect) {
+  if (!state.failure || state.failure->kind != FailureKind::FilmNotFound ||
+      complex.mesh.facets.size() > kDirect) {
     return state;
   }
   complex.mesh.points = before;

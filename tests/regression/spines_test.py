@@ -198,24 +198,18 @@ class Spines(ProgramTest):
         # Eight arms between two eyes and four washers, close beside each other:
         # half of such starts used to end far from rest, or on folded facets.
         frame = pathlib.Path(__file__).parent / "frame.toml"
+        knees = tomllib.loads(frame.read_text())["design"]["knee"]["initial"]
         chance = random.Random(11)
+        moved = []
         for number in range(2):
-            moved = []
-            for i in range(1, 9) if number > 0 else ():
-                for k in (1, 2):
-                    for c in (1, 2, 3):
-                        knee = self.frame_knee(frame, i, k, c)
-                        moved += ["--set", f"knee[{i},{k},{c}]="
-                                  f"{knee + chance.uniform(-1, 1):.6g}"]
             done = self.call("evolve", frame, "--out", f"frame_{number}",
                              "--no-pictures", *moved, timeout=300)
             self.expect(done, 0, "film: stable")
-
-    def frame_knee(self, frame, *at):
-        knee = tomllib.loads(frame.read_text())["design"]["knee"]["initial"]
-        for k in at:
-            knee = knee[k - 1]
-        return knee
+            moved = [word for i, arm in enumerate(knees, 1)
+                     for k, point in enumerate(arm, 1)
+                     for c, at in enumerate(point, 1)
+                     for word in ("--set", f"knee[{i},{k},{c}]="
+                                  f"{at + chance.uniform(-1, 1):.6g}")]
 
     def test_an_arm_may_pass_over_a_bore(self):
         # From the eye around it, up and across its axis at three radii.

@@ -138,21 +138,30 @@ TEST(SpineFilms, AFilmThatFloatsNeedsNoRim) {
   settled(model);
 }
 
-/// An eye around a bore along y, an arm from it to a ring.
-TEST(SpineFilms, AnEyeAroundABore) {
+/// An eye of spines about a bore along y, 10 wide, and an arm along x from it
+/// to a rim; `beside` is how far the eye's middle stands off the bore's axis.
+films::FilmSystem eye(double half, double ring_radius, double radius,
+                      const films::SpineSpec& arm_spine, double beside = 0.0) {
   films::FilmSystem system =
-      spined({}, {curves::Circle{Vec3(0, -9, 0), -Vec3::UnitY(), 10.0},
-                  curves::Circle{Vec3(0, 9, 0), Vec3::UnitY(), 10.0},
-                  curves::Circle{Vec3(90, 0, 0), Vec3::UnitX(), 8.0}});
+      spined({}, {curves::Circle{Vec3(0, -half, 0), -Vec3::UnitY(), 10.0},
+                  curves::Circle{Vec3(0, half, 0), Vec3::UnitY(), 10.0},
+                  curves::Circle{arm_spine.points.back(), Vec3::UnitX(),
+                                 arm_spine.radii.back()}});
   system.caps = {{"bore", "rim_0", "rim_1"}, {"head", "rim_2"}};
   system.bodies[0].enclosed_by = {"skin", "bore", "head"};
   Points ring;
   for (int k = 0; k <= 12; ++k) {
     const double a = 2.0 * kPi * k / 12.0;
-    ring.emplace_back(15.0 * std::cos(a), 0.0, 15.0 * std::sin(a));
+    ring.emplace_back(ring_radius * std::cos(a) - beside, 0.0,
+                      ring_radius * std::sin(a));
   }
-  system.spines = {arm("eye", ring, {9.0}, true),
-                   arm("arm", {Vec3(20, 0, 0), Vec3(90, 0, 0)}, {8.0})};
+  system.spines = {arm("eye", ring, {radius}, true), arm_spine};
+  return system;
+}
+
+TEST(SpineFilms, AnEyeAroundABore) {
+  const films::FilmSystem system =
+      eye(9.0, 15.0, 9.0, arm("arm", {Vec3(20, 0, 0), Vec3(90, 0, 0)}, {8.0}));
   const frozen::FilmModel model =
       frozen::FilmModel::freeze(system, {.edge = 4.0});
   const settle::FilmState& film = settled(model);
@@ -177,19 +186,8 @@ std::string refusal(const films::FilmSystem& system) {
 TEST(SpineFilms, BoresInThinEyesAreNoEndsOfSpines) {
   // The spine of the arm begins in the bore's middle, nearer to its rims than
   // half its radius.
-  films::FilmSystem system =
-      spined({}, {curves::Circle{Vec3(0, -4, 0), -Vec3::UnitY(), 10.0},
-                  curves::Circle{Vec3(0, 4, 0), Vec3::UnitY(), 10.0},
-                  curves::Circle{Vec3(90, 0, 0), Vec3::UnitX(), 9.0}});
-  system.caps = {{"bore", "rim_0", "rim_1"}, {"head", "rim_2"}};
-  system.bodies[0].enclosed_by = {"skin", "bore", "head"};
-  Points ring;
-  for (int k = 0; k <= 12; ++k) {
-    const double a = 2.0 * kPi * k / 12.0;
-    ring.emplace_back(14.0 * std::cos(a), 0.0, 14.0 * std::sin(a));
-  }
-  system.spines = {arm("eye", ring, {6.0}, true),
-                   arm("arm", {Vec3::Zero(), Vec3(90, 0, 0)}, {9.0})};
+  const films::FilmSystem system =
+      eye(4.0, 14.0, 6.0, arm("arm", {Vec3::Zero(), Vec3(90, 0, 0)}, {9.0}));
   settled(frozen::FilmModel::freeze(system, {.edge = 3.0}));
 }
 
@@ -197,19 +195,9 @@ TEST(SpineFilms, BoresInThinEyesAreNoEndsOfSpines) {
 // wide as the bore would leave its rims joined there.
 TEST(SpineFilms, AnEyeMayBeWiderThanItsBore) {
   for (const double wider : {0.0, 0.3, 0.6}) {
-    films::FilmSystem system =
-        spined({}, {curves::Circle{Vec3(0, -3, 0), -Vec3::UnitY(), 10.0},
-                    curves::Circle{Vec3(0, 3, 0), Vec3::UnitY(), 10.0},
-                    curves::Circle{Vec3(60, 0, 0), Vec3::UnitX(), 4.0}});
-    system.caps = {{"bore", "rim_0", "rim_1"}, {"head", "rim_2"}};
-    system.bodies[0].enclosed_by = {"skin", "bore", "head"};
-    Points ring;
-    for (int k = 0; k <= 12; ++k) {
-      const double a = 2.0 * kPi * k / 12.0;
-      ring.emplace_back(14.0 * std::cos(a) - wider, 0.0, 14.0 * std::sin(a));
-    }
-    system.spines = {arm("eye", ring, {4.2}, true),
-                     arm("arm", {Vec3(17, 0, 0), Vec3(60, 0, 0)}, {4.0})};
+    const films::FilmSystem system =
+        eye(3.0, 14.0, 4.2, arm("arm", {Vec3(17, 0, 0), Vec3(60, 0, 0)}, {4.0}),
+            wider);
     const frozen::FilmModel model =
         frozen::FilmModel::freeze(system, {.edge = 2.5});
     EXPECT_EQ(settled(model).report.index, 0) << wider;
