@@ -147,7 +147,7 @@ case_data::CurveEntry read_curve(CaseContext& context, const CaseTable& table,
     return curve;
   }
   if (table.has("pieces")) {
-    curve.pieces = constant_above(context, table, "pieces", 0.0, 0.0);
+    curve.pieces = constant_above(context, table, "pieces", 0.0, 1.0);
   }
   const CurveRow& row = case_data::row_named(curve_kinds(), *kind);
   table.check_kind(*kind, row.keys);

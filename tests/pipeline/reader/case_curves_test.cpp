@@ -368,11 +368,16 @@ TEST(CaseCurves, AreCutIntoPieces) {
 }
 
 TEST(CaseCurves, PiecesAreLengthsAboveZero) {
-  EXPECT_THAT(
-      problems_of(disk("[curves.rim]\nkind = \"circle\"\ncenter = [0, 0, 0]\n"
-                       "normal = [0, 0, 1]\nradius = 8\npieces = -1\n")),
-      ElementsAre(HasSubstr("case.toml:16: curves.rim.pieces is -1; it must "
-                            "be above 0")));
+  const auto asked = [](const std::string& pieces) {
+    return problems_of(
+        disk("[curves.rim]\nkind = \"circle\"\ncenter = [0, 0, 0]\n"
+             "normal = [0, 0, 1]\nradius = 8\npieces = " +
+             pieces + "\n"));
+  };
+  EXPECT_THAT(asked("-1"),
+              ElementsAre(HasSubstr("case.toml:16: curves.rim.pieces is -1; "
+                                    "it must be above 0")));
+  EXPECT_THAT(asked("\"2 N\""), ElementsAre(HasSubstr("is no length")));
 }
 
 }  // namespace
