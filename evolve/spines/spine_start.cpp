@@ -22,6 +22,7 @@ namespace {
 constexpr double kNear = 0.5;   // of a rim's plane [radii]
 constexpr double kCell = 0.5;   // of the lattice [radii]
 constexpr double kBall = 1.2;   // about samples [radii]
+constexpr double kWall = 1.0;   // about bores, at least [radii]
 constexpr double kReach = 3.0;  // of what a rim cuts off [radii]
 constexpr std::array<double, 5> kWidths = {1.0, 1.05, 1.1, 1.2, 1.3};
 
@@ -73,11 +74,15 @@ struct SpineField {
   std::vector<films::Pole> poles;
   std::vector<double> tension;
   std::vector<int> spine;
+  std::vector<Ball> walls;  // of bores, wet
 
   double level(const Vec3& x) const {
     double sum = -1.0;
     for (std::size_t k = 0; k < poles.size(); ++k) {
       sum += level_at(poles[k], tension[k], x);
+    }
+    for (const Ball& ball : walls) {
+      sum = std::max(sum, 1.0 - (x - ball.at).norm() / ball.radius);
     }
     return sum;
   }
@@ -113,6 +118,34 @@ class BoreCut {
     return along > -before_ && (p - high_plane_.middle).dot(axis_) < after_ &&
            within(low_plane_, low_, narrowed) &&
            within(high_plane_, high_, narrowed);
+  }
+
+  /// Balls over the cut's side that do not stand out beyond its rims by more
+  /// than half their radius.
+  std::vector<Ball> wall(double radius) const {
+    std::vector<Ball> result;
+    const double height = (high_plane_.middle - low_plane_.middle).norm();
+    const double first = 0.5 * std::min(radius, height);
+    const double step = 0.5 * radius;
+    const int rows =
+        1 + static_cast<int>(std::ceil((height - 2.0 * first) / step));
+    for (std::size_t k = 0; k < low_.size(); ++k) {
+      const Vec3& a = low_[k];
+      const Vec3 side = low_[(k + 1) % low_.size()] - a;
+      const int pieces = 1 + static_cast<int>(side.norm() / step);
+      for (int i = 0; i < pieces; ++i) {
+        const Vec3 p = a + side * i / pieces - low_plane_.middle;
+        const Vec3 across = width_ * (p - axis_.dot(p) * axis_);
+        for (int j = 0; j < rows; ++j) {
+          const double along =
+              rows == 1 ? 0.5 * height
+                        : first + (height - 2.0 * first) * j / (rows - 1);
+          result.push_back(
+              {low_plane_.middle + across + along * axis_, radius});
+        }
+      }
+    }
+    return result;
   }
 
  private:
@@ -270,6 +303,15 @@ struct SpineSite {
     thickest = std::max(thickest, *thick);
   }
 
+  /// Liquid that is thinner about a bore than the lattice can see would leave
+  /// its two rims joined there.
+  void add_wall(const BoreCut& bore) {
+    for (const Ball& ball : bore.wall(kWall * thinnest)) {
+      field.walls.push_back(ball);
+      balls.push_back(ball);
+    }
+  }
+
   void add_bores(const std::vector<SpineRim>& rims) {
     for (std::size_t k = 0; k < rims.size(); ++k) {
       if (rims[k].bore < 0) {
@@ -281,6 +323,7 @@ struct SpineSite {
       if (rims[k].bore > static_cast<int>(k)) {
         bores.emplace_back(rims[k].points, rims[rims[k].bore].points, field,
                            kCell * thinnest);
+        add_wall(bores.back());
       }
     }
   }
@@ -320,16 +363,103 @@ SurfaceMesh level_set(const SpineSite& site, const std::string& film) {
   }
 }
 
-/// The cut that a loop of the level set's border is at; none where there is
-/// none near.
-std::size_t nearest_cut(const std::vector<Cut>& cuts, const Vec3& middle) {
+/// The cut that a loop of the level set's border is at. Throws InvalidInput
+/// where there is none near.
+std::size_t nearest_cut(const std::vector<Cut>& cuts, const Vec3& middle,
+                        const std::string& film) {
   const auto nearest = std::min_element(
       cuts.begin(), cuts.end(), [&](const Cut& a, const Cut& b) {
         return (a.at - middle).norm() < (b.at - middle).norm();
       });
-  const bool near = nearest != cuts.end() &&
-                    (nearest->at - middle).norm() <= kReach * nearest->radius;
-  return near ? static_cast<std::size_t>(nearest - cuts.begin()) : cuts.size();
+  if (nearest == cuts.end() ||
+      (nearest->at - middle).norm() > kReach * nearest->radius) {
+    throw InvalidInput(fmt::format(
+        "film '{}': the arms of its spines do not close near ({:.6g}, {:.6g}, "
+        "{:.6g}); arms that are thin beside others, or that meet a rim from "
+        "the side, need a point more",
+        film, middle.x(), middle.y(), middle.z()));
+  }
+  return static_cast<std::size_t>(nearest - cuts.begin());
+}
+
+Points points_of(const std::vector<int>& loop, const Points& points) {
+  Points result;
+  for (const int v : loop) {
+    result.push_back(points[v]);
+  }
+  return result;
+}
+
+double length_of_loop(const Points& loop) {
+  double length = 0.0;
+  for (std::size_t k = 0; k < loop.size(); ++k) {
+    length += (loop[(k + 1) % loop.size()] - loop[k]).norm();
+  }
+  return length;
+}
+
+/// Per cut the longest loop there, which is joined to the rim; others are holes
+/// where the cut pierces an arm beside it. Throws InvalidInput for a cut
+/// without one.
+std::vector<int> longest_at_cuts(const std::vector<Cut>& cuts,
+                                 const std::vector<SpineRim>& rims,
+                                 const Points& points,
+                                 const std::vector<std::vector<int>>& loops,
+                                 const std::string& film) {
+  std::vector<int> result(cuts.size(), -1);
+  std::vector<double> length(cuts.size(), 0.0);
+  for (std::size_t k = 0; k < loops.size(); ++k) {
+    const Points loop = points_of(loops[k], points);
+    const std::size_t cut = nearest_cut(cuts, mean_of(loop), film);
+    if (length_of_loop(loop) > length[cut]) {
+      length[cut] = length_of_loop(loop);
+      result[cut] = static_cast<int>(k);
+    }
+  }
+  for (std::size_t k = 0; k < cuts.size(); ++k) {
+    if (result[k] < 0) {
+      throw InvalidInput(
+          fmt::format("film '{}': its spines' liquid does not reach curve '{}'",
+                      film, rims[cuts[k].rim].curve));
+    }
+  }
+  return result;
+}
+
+/// Per vertex: of a piece that cuts part from all that they join to rims?
+std::vector<char> pieces_left_over(const SurfaceMesh& level,
+                                   const std::vector<std::vector<int>>& loops,
+                                   const std::vector<int>& joined) {
+  UnionFind pieces(level.points.size());
+  for (const Triangle& t : level.facets) {
+    pieces.join(t[0], t[1]);
+    pieces.join(t[0], t[2]);
+  }
+  std::set<int> cut_off;
+  for (const std::vector<int>& loop : loops) {
+    cut_off.insert(pieces.root(loop[0]));
+  }
+  for (const int loop : joined) {
+    cut_off.erase(pieces.root(loops[loop][0]));
+  }
+  std::vector<char> result(level.points.size(), 0);
+  for (std::size_t v = 0; v < result.size(); ++v) {
+    result[v] = cut_off.count(pieces.root(static_cast<int>(v))) != 0 ? 1 : 0;
+  }
+  return result;
+}
+
+/// Facets from the loop of the level set to a new vertex in its middle.
+void close_loop(const std::vector<int>& loop, const std::vector<int>& number,
+                SurfaceMesh& mesh) {
+  const auto middle = static_cast<int>(mesh.points.size());
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t k = 0; k < loop.size(); ++k) {
+    sum += mesh.points[number[loop[k]]];
+    mesh.facets.push_back(
+        {number[loop[(k + 1) % loop.size()]], number[loop[k]], middle});
+  }
+  mesh.points.push_back(sum / static_cast<double>(loop.size()));
 }
 
 }  // namespace
@@ -363,6 +493,10 @@ SurfaceMesh spine_start(const std::vector<films::SpineSpec>& spines,
   site.add_bores(rims);
   require_one_cut_each(site, rims, film);
   const SurfaceMesh level = level_set(site, film);
+  const std::vector<std::vector<int>> loops = border_loops(level, film);
+  const std::vector<int> longest =
+      longest_at_cuts(site.cuts, rims, level.points, loops, film);
+  const std::vector<char> left_over = pieces_left_over(level, loops, longest);
   // The rims' points first, then those of the level set.
   SurfaceMesh result;
   result.labels = {film};
@@ -372,49 +506,41 @@ SurfaceMesh spine_start(const std::vector<films::SpineSpec>& spines,
     result.points.insert(result.points.end(), rim.points.begin(),
                          rim.points.end());
   }
-  const auto shift = static_cast<int>(result.points.size());
-  result.points.insert(result.points.end(), level.points.begin(),
-                       level.points.end());
-  for (const Triangle& t : level.facets) {
-    result.facets.push_back({t[0] + shift, t[1] + shift, t[2] + shift});
+  const auto on_rims = static_cast<int>(result.points.size());
+  std::vector<int> number(level.points.size(), -1);
+  for (std::size_t v = 0; v < level.points.size(); ++v) {
+    if (left_over[v] == 0) {
+      number[v] = static_cast<int>(result.points.size());
+      result.points.push_back(level.points[v]);
+    }
   }
-  // A band from each loop of the border to the rim of the nearest cut.
-  std::vector<char> joined(site.cuts.size() + 1, 0);
-  joined.back() = 1;  // none
-  for (const std::vector<int>& loop : border_loops(level, film)) {
-    Points low;
-    for (const int v : loop) {
-      low.push_back(level.points[v]);
+  for (const Triangle& t : level.facets) {
+    if (left_over[t[0]] == 0) {
+      result.facets.push_back({number[t[0]], number[t[1]], number[t[2]]});
     }
-    const Vec3 middle = mean_of(low);
-    const std::size_t cut = nearest_cut(site.cuts, middle);
-    if (joined[cut] != 0) {
-      throw InvalidInput(fmt::format(
-          "film '{}': the arms of its spines do not close near ({:.6g}, "
-          "{:.6g}, {:.6g}); arms that are thin beside others, or that meet a "
-          "rim from the side, need a point more",
-          film, middle.x(), middle.y(), middle.z()));
-    }
-    joined[cut] = 1;
-    const int rim = site.cuts[cut].rim;
-    const auto count = static_cast<int>(low.size());
-    for (Triangle t : films::loft_band(low, rims[rim].points)) {
+  }
+  for (std::size_t k = 0; k < site.cuts.size(); ++k) {
+    const int rim = site.cuts[k].rim;
+    const std::vector<int>& loop = loops[longest[k]];
+    const auto count = static_cast<int>(loop.size());
+    for (Triangle t :
+         films::loft_band(points_of(loop, level.points), rims[rim].points)) {
       for (int& v : t) {
-        v = v < count ? loop[v] + shift : first[rim] + v - count;
+        v = v < count ? number[loop[v]] : first[rim] + v - count;
       }
       // The band runs along the loop as the facets there do: the other way.
       result.facets.push_back({t[0], t[2], t[1]});
     }
   }
-  for (std::size_t k = 0; k < site.cuts.size(); ++k) {
-    if (joined[k] == 0) {
-      throw InvalidInput(
-          fmt::format("film '{}': its spines' liquid does not reach curve '{}'",
-                      film, rims[site.cuts[k].rim].curve));
+  for (std::size_t k = 0; k < loops.size(); ++k) {
+    if (std::find(longest.begin(), longest.end(), static_cast<int>(k)) ==
+            longest.end() &&
+        left_over[loops[k][0]] == 0) {
+      close_loop(loops[k], number, result);
     }
   }
   result.facet_label.assign(result.facets.size(), 0);
-  require_one_piece(result, shift, film);
+  require_one_piece(result, on_rims, film);
   return result;
 }
 

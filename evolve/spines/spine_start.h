@@ -24,8 +24,8 @@ std::array<int, 2> rims_at_ends(const films::SpineSpec& spine,
 
 /// Facets between the rims, whose points come first, in order. Their size is
 /// that of the thinnest spine. Throws InvalidInput for a rim at which no spine
-/// or more than one ends and which is no bore's (by name), and where the liquid
-/// at a rim is not one arm, at a bore not a ring, or in pieces.
+/// or more than one ends and which is no bore's (by name), where the liquid
+/// does not reach a rim, and where a piece of it reaches none.
 SurfaceMesh spine_start(const std::vector<films::SpineSpec>& spines,
                         const std::vector<SpineRim>& rims,
                         const std::string& film);
