@@ -81,10 +81,13 @@ struct SpineField {
     for (std::size_t k = 0; k < poles.size(); ++k) {
       sum += level_at(poles[k], tension[k], x);
     }
+    double wall = 0.0;
     for (const Ball& ball : walls) {
-      sum = std::max(sum, 1.0 - (x - ball.at).norm() / ball.radius);
+      const double near =
+          1.0 - (x - ball.at).squaredNorm() / (ball.radius * ball.radius);
+      wall = std::max(wall, near);
     }
-    return sum;
+    return sum + wall * wall;
   }
 
   /// True where the liquid is that spine's more than all others'.
