@@ -141,8 +141,7 @@ class BoreCut {
         const Vec3 across = width_ * (p - axis_.dot(p) * axis_);
         for (int j = 0; j < rows; ++j) {
           const double along =
-              rows == 1 ? 0.5 * height
-                        : first + (height - 2.0 * first) * j / (rows - 1);
+              first + (height - 2.0 * first) * j / std::max(1, rows - 1);
           result.push_back(
               {low_plane_.middle + across + along * axis_, radius});
         }
@@ -228,15 +227,21 @@ std::vector<std::vector<int>> border_loops(const SurfaceMesh& mesh,
   return loops;
 }
 
-/// Throws InvalidInput for a piece without a rim beside another. The rims'
-/// points are the first `on_rims`.
-void require_one_piece(const SurfaceMesh& mesh, int on_rims,
-                       const std::string& film) {
+/// What facets join to one piece.
+UnionFind pieces_of(const SurfaceMesh& mesh) {
   UnionFind pieces(mesh.points.size());
   for (const Triangle& t : mesh.facets) {
     pieces.join(t[0], t[1]);
     pieces.join(t[0], t[2]);
   }
+  return pieces;
+}
+
+/// Throws InvalidInput for a piece without a rim beside another. The rims'
+/// points are the first `on_rims`.
+void require_one_piece(const SurfaceMesh& mesh, int on_rims,
+                       const std::string& film) {
+  UnionFind pieces = pieces_of(mesh);
   std::set<int> held;
   for (int v = 0; v < on_rims; ++v) {
     held.insert(pieces.root(v));
@@ -414,8 +419,9 @@ std::vector<int> longest_at_cuts(const std::vector<Cut>& cuts,
   for (std::size_t k = 0; k < loops.size(); ++k) {
     const Points loop = points_of(loops[k], points);
     const std::size_t cut = nearest_cut(cuts, mean_of(loop), film);
-    if (length_of_loop(loop) > length[cut]) {
-      length[cut] = length_of_loop(loop);
+    const double own = length_of_loop(loop);
+    if (own > length[cut]) {
+      length[cut] = own;
       result[cut] = static_cast<int>(k);
     }
   }
@@ -433,11 +439,7 @@ std::vector<int> longest_at_cuts(const std::vector<Cut>& cuts,
 std::vector<char> pieces_left_over(const SurfaceMesh& level,
                                    const std::vector<std::vector<int>>& loops,
                                    const std::vector<int>& joined) {
-  UnionFind pieces(level.points.size());
-  for (const Triangle& t : level.facets) {
-    pieces.join(t[0], t[1]);
-    pieces.join(t[0], t[2]);
-  }
+  UnionFind pieces = pieces_of(level);
   std::set<int> cut_off;
   for (const std::vector<int>& loop : loops) {
     cut_off.insert(pieces.root(loop[0]));
