@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include "pipeline/case_data/study_kinds.h"
+#include "pipeline/files/named_values.h"
 #include "pipeline/results/results.h"
-#include "pipeline/store/named_values.h"
 #include "pipeline/study/study_records.h"
 
 namespace meniscus::app {
@@ -54,7 +54,7 @@ Json evaluation_json(const case_data::Case& input,
   json["model"] = record.model;
   json["phase"] = record.phase;
   json["evaluation"] = record.number;
-  json["design"] = store::named_json(record.input_names, record.inputs);
+  json["design"] = files::named_json(record.input_names, record.inputs);
   json["responses"] = value_map(record.response_names, record.responses);
   json["objective"] = or_null(event.status.objective);
   json["violation"] = or_null(event.status.violation);

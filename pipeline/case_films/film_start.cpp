@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "evolve/curves/curve.h"
 #include "pipeline/case_data/case_checks.h"
+#include "pipeline/case_films/film_way.h"
 
 namespace meniscus::case_films {
 
@@ -19,6 +20,8 @@ namespace {
 constexpr double kLonger = 4.0 / 3.0;
 // Films whose areas differ by less are one, on other facets.
 constexpr double kSameFilm = 0.05;
+// A step that a film does not follow is halved so often.
+constexpr int kHalvings = 3;
 
 bool rims_keep_their_size(const films::FilmSystem& before,
                           const films::FilmSystem& after) {
@@ -61,6 +64,40 @@ std::optional<frozen::FilmModel> freeze_next(const frozen::FilmModel& before,
   return result;
 }
 
+/// Over designs half-way between, where the film does not follow at once.
+std::optional<frozen::FilmModel> lead(const case_data::Case& input,
+                                      const frozen::FilmModel& before,
+                                      const Waypoint& from, const Waypoint& to,
+                                      int halvings,
+                                      const frozen::FilmModelOptions& options) {
+  std::optional<frozen::FilmModel> next =
+      freeze_next(before, from.system, to.system, options);
+  if (next || halvings == 0 || before.reference().failure) {
+    return next;
+  }
+  std::optional<Waypoint> middle;
+  if (!what_prevents([&] {
+         middle = waypoint_between(input, from, to);
+       }).empty()) {
+    return std::nullopt;
+  }
+  std::optional<frozen::FilmModel> half =
+      lead(input, before, from, *middle, halvings - 1, options);
+  return half ? lead(input, *half, *middle, to, halvings - 1, options)
+              : std::nullopt;
+}
+
+void log_lost(const case_data::Case& input,
+              const frozen::FilmModelOptions& options) {
+  if (!input.way.empty() && options.monitor != nullptr) {
+    options.monitor->log(
+        Severity::Warning,
+        fmt::format("the film of '{}' does not follow to this design, nor on "
+                    "the way there: it starts from first facets",
+                    input.start));
+  }
+}
+
 }  // namespace
 
 bool is_same_film(const settle::FilmReport& one,
@@ -83,17 +120,15 @@ frozen::FilmModel freeze_films(const case_data::Case& input,
                                const case_data::EvaluatedCase& inputs,
                                const frozen::FilmModelOptions& options) {
   try {
-    std::vector<films::FilmSystem> way;
-    for (const VectorX& design : input.earlier_freezes) {
-      way.push_back(evaluate(input, design).film_system);
-    }
-    way.push_back(inputs.film_system);
-    frozen::FilmModel model = frozen::FilmModel::freeze(way.front(), options);
+    const std::vector<Waypoint> way = film_way(input, inputs);
+    frozen::FilmModel model =
+        frozen::FilmModel::freeze(way.front().system, options);
     for (std::size_t k = 1; k < way.size(); ++k) {
       std::optional<frozen::FilmModel> next =
-          freeze_next(model, way[k - 1], way[k], options);
+          lead(input, model, way[k - 1], way[k], kHalvings, options);
       if (!next) {  // as a case of its own
-        return frozen::FilmModel::freeze(way.back(), options);
+        log_lost(input, options);
+        return frozen::FilmModel::freeze(way.back().system, options);
       }
       model = *std::move(next);
     }

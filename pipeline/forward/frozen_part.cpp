@@ -312,7 +312,7 @@ bool fill_other_facets(const case_data::EvaluatedCase& inputs,
     return false;
   }
   std::vector<double> edges;
-  if (!part.input.earlier_freezes.empty()) {
+  if (!part.input.earlier_freezes.empty() || !part.input.way.empty()) {
     edges.push_back(1.0);
   }
   if (part.walls) {
@@ -324,6 +324,7 @@ bool fill_other_facets(const case_data::EvaluatedCase& inputs,
                     .start = part.start,
                     .scans = part.scans};
     anew.input.earlier_freezes.clear();
+    anew.input.way.clear();
     anew.start.failure.reset();
     ForwardModelOptions own = options;
     own.edge_factor *= edge;
@@ -338,6 +339,7 @@ bool fill_other_facets(const case_data::EvaluatedCase& inputs,
       return false;
     }
     anew.input.earlier_freezes = part.input.earlier_freezes;
+    anew.input.way = part.input.way;
     part = std::move(anew);
     return true;
   });

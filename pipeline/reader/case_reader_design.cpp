@@ -1,7 +1,9 @@
 /// Design variables, vectors of them and parameters: the names that expressions
 /// know. Part of the case-file reader.
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <map>
 #include <regex>
 #include <set>
@@ -10,7 +12,10 @@
 
 #include <fmt/format.h>
 
+#include "core/atomic_file.h"
+#include "core/error.h"
 #include "pipeline/case_data/case_checks.h"
+#include "pipeline/files/earlier_run.h"
 #include "pipeline/reader/case_reader_tables.h"
 
 namespace meniscus::reader {
@@ -36,6 +41,29 @@ std::vector<std::pair<std::string, const toml::node*>> in_file_order(
     found.emplace_back(name, parameters->get(name));
   }
   return found;
+}
+
+/// What the case holds of that run, from its results folder at first: beside
+/// the case, else in the working folder. Throws Error.
+std::string earlier_run_text(const std::string& folder,
+                             case_data::Case& result) {
+  namespace fs = std::filesystem;
+  const std::string path = (fs::path(folder) / "result.json").string();
+  const auto held = std::find_if(
+      result.files.begin(), result.files.end(),
+      [&](const case_data::CaseFile& file) { return file.path == path; });
+  if (held != result.files.end()) {
+    return held->text;
+  }
+  const fs::path beside = fs::path(result.path).parent_path() / path;
+  const fs::path found = fs::is_regular_file(beside) ? beside : fs::path(path);
+  if (!fs::is_regular_file(found)) {
+    throw InvalidInput(
+        "there is no result.json in this folder, looked for beside the case "
+        "and in the working folder; expected the results of a run");
+  }
+  result.files.push_back({path, files::earlier_run_text(read_file(found))});
+  return result.files.back().text;
 }
 
 }  // namespace
@@ -522,6 +550,49 @@ void warn_of_unused(CaseContext& context, const toml::table& root,
                       is_design ? "design variable" : "parameter",
                       context.names[k]));
     }
+  }
+}
+
+void read_start(CaseContext& context, const toml::table& root,
+                case_data::Case& result) {
+  const toml::node* node = root.get("start");
+  if (node == nullptr) {
+    return;
+  }
+  const case_data::SourceLine line = context.line_of(*node);
+  const auto* folder = node->as_string();
+  if (folder == nullptr) {
+    context.problems.add(line, fmt::format("start is {}; expected the results "
+                                           "folder of an earlier run in quotes",
+                                           described(*node)));
+    return;
+  }
+  result.start = folder->get();
+  try {
+    const files::EarlierRun run = files::read_earlier_run(
+        earlier_run_text(result.start, result), context.names);
+    if (run.units != result.units.name) {
+      throw InvalidInput(
+          fmt::format("its numbers are in {}, those of this "
+                      "case in {}",
+                      run.units, result.units.name));
+    }
+    if (!std::any_of(run.values.back().begin(), run.values.back().end(),
+                     [](double value) { return std::isfinite(value); })) {
+      throw InvalidInput(
+          "it has no design variable and no parameter of this case, by which "
+          "films could be led from there");
+    }
+    result.way = run.values;
+    for (VectorX& values : result.way) {
+      for (std::size_t k = 0; k < result.design.size(); ++k) {
+        double& value = values[static_cast<Eigen::Index>(k)];
+        value = std::isfinite(value) ? value : result.design[k].initial;
+      }
+    }
+  } catch (const Error& error) {
+    context.problems.add(
+        line, fmt::format("start = \"{}\": {}", result.start, error.what()));
   }
 }
 

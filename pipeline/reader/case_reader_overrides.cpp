@@ -95,8 +95,8 @@ Slot find_slot(toml::table& root, const std::string& name) {
     if (toml::table* design = root["design"][name].as_table()) {
       return {design, "initial"};
     }
-    toml::node* top = root.get(name);
-    return {top != nullptr && !top->is_table() ? &root : nullptr, name};
+    const bool of_head = find_key(case_table(""), name) != nullptr;
+    return {of_head ? &root : nullptr, name};
   }
   Slot slot{&root, parts.back()};
   for (std::size_t k = 0; k + 1 < parts.size() && slot.parent != nullptr; ++k) {

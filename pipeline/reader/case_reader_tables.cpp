@@ -21,7 +21,7 @@ void check_top(CaseContext& context, const toml::table& root) {
     if (name.empty()) {
       for (const KeySpec& key : spec.keys) {
         known.emplace_back(key.key);
-        if (!root.contains(key.key)) {
+        if (key.required && !root.contains(key.key)) {
           context.problems.add(1, fmt::format("the file has no '{}' ({}); add "
                                               "it above the first table",
                                               key.key, key.doc));
@@ -278,6 +278,7 @@ void read_tables(const toml::table& root, const OverriddenNodes& overridden,
   check_top(context, root);
   read_head(context, root, result);
   read_names(context, root, result);
+  read_start(context, root, result);
   read_symmetry(context, root, result);
   read_shapes(context, root, result);
   read_geometry(context, root, result);

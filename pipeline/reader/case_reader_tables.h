@@ -19,6 +19,10 @@ void read_tables(const toml::table& root, const OverriddenNodes& overridden,
 void read_names(CaseContext& context, const toml::table& root,
                 case_data::Case& result);
 
+/// The earlier run that films begin from, once names and units are known.
+void read_start(CaseContext& context, const toml::table& root,
+                case_data::Case& result);
+
 /// Of those that nothing uses; last of all.
 void warn_of_unused(CaseContext& context, const toml::table& root,
                     const case_data::Case& result);

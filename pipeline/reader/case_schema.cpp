@@ -23,7 +23,10 @@ std::vector<TableSpec> make_tables() {
        {{"title", K::Text, D::None, true, "one line for people"},
         {"units", K::Choice, D::None, true,
          "consistent unit system of every number in the file",
-         "mm-N-MPa|m-N-Pa|in-lbf-psi"}}},
+         "mm-N-MPa|m-N-Pa|in-lbf-psi"},
+        {"start", K::Text, D::None, false,
+         "results folder of an earlier run, beside the case or in the working "
+         "folder: films begin where that run's stood"}}},
       {"parameters",
        false,
        N::Optional,

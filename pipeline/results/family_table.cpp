@@ -8,10 +8,10 @@
 #include <nlohmann/json.hpp>
 
 #include "pipeline/case_data/design_vectors.h"
+#include "pipeline/files/named_values.h"
 #include "pipeline/files/text_table.h"
 #include "pipeline/forward/figures_json.h"
 #include "pipeline/results/results.h"
-#include "pipeline/store/named_values.h"
 
 namespace meniscus::results {
 
@@ -29,7 +29,7 @@ FamilyRow::Numbers numbers_of(const Json& result, const char* key,
   FamilyRow::Numbers numbers;
   for (const std::string& name : names) {
     const Json* value =
-        result.contains(key) ? store::find_named(result[key], name) : nullptr;
+        result.contains(key) ? files::find_named(result[key], name) : nullptr;
     if (value != nullptr) {
       numbers.emplace_back(name, number(*value));
     }
@@ -55,7 +55,7 @@ VectorX values_of(const FamilyRow::Numbers& numbers) {
 }
 
 Json object(const FamilyRow::Numbers& numbers) {
-  return store::named_json(names_of(numbers), values_of(numbers));
+  return files::named_json(names_of(numbers), values_of(numbers));
 }
 
 constexpr const char* kError = "_error";

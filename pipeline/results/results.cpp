@@ -16,13 +16,13 @@
 #include "pipeline/accuracy/mesh_errors.h"
 #include "pipeline/case_data/case_symmetry.h"
 #include "pipeline/case_data/composed_responses.h"
+#include "pipeline/files/named_values.h"
 #include "pipeline/files/place_json.h"
 #include "pipeline/forward/figures_json.h"
 #include "pipeline/forward/norm_peaks.h"
 #include "pipeline/forward/walls.h"
 #include "pipeline/results/export_part.h"
 #include "pipeline/results/run_files.h"
-#include "pipeline/store/named_values.h"
 #include "pipeline/store/refreeze.h"
 #include "pipeline/store/stored_case.h"
 #include "pipeline/store/study_table.h"
@@ -134,7 +134,7 @@ Json value_map(const std::vector<std::string>& names, const VectorX& values) {
 }
 
 Json parameters_json(const case_data::Case& input, const VectorX& design) {
-  Json json = store::named_json(case_data::design_names(input), design);
+  Json json = files::named_json(case_data::design_names(input), design);
   for (const auto& [name, value] : case_data::parameter_values(input, design)) {
     json[name] = value;
   }
@@ -157,7 +157,7 @@ Json coarse_json(const case_data::Case& input,
   return {{"edge_factor", coarse.edge_factor},
           {"message", coarse.message},
           {"parameters", answered
-                             ? store::named_json(case_data::design_names(input),
+                             ? files::named_json(case_data::design_names(input),
                                                  coarse.design)
                              : Json()},
           {"evaluations", coarse.evaluations},
@@ -172,7 +172,7 @@ Json refrozen_json(const case_data::Case& input,
         {{"evaluation", r.evaluation},
          {"reason", r.reason},
          {"parameters",
-          store::named_json(case_data::design_names(input), r.design)},
+          files::named_json(case_data::design_names(input), r.design)},
          {"responses",
           value_map(case_data::response_names(input), r.responses)},
          {"shift", value_map(case_data::response_names(input), r.shift)}});
@@ -276,10 +276,10 @@ nlohmann::ordered_json result_json(const case_data::Case& input,
         {"responses", value_map(names, result.element_errors->responses)}};
   }
   json["parameter_errors"] =
-      store::named_json(case_data::design_names(input), result.design_errors);
+      files::named_json(case_data::design_names(input), result.design_errors);
   if (result.start) {
     json["start"] = {
-        {"parameters", store::named_json(case_data::design_names(input),
+        {"parameters", files::named_json(case_data::design_names(input),
                                          result.start->design)},
         {"responses", value_map(names, result.start->responses)}};
   }

@@ -10,10 +10,10 @@
 #include "core/error.h"
 #include "core/json.h"
 #include "pipeline/case_data/design_vectors.h"
+#include "pipeline/files/named_values.h"
 #include "pipeline/reader/case_reader.h"
 #include "pipeline/store/find_runs.h"
 #include "pipeline/store/incumbent.h"
-#include "pipeline/store/named_values.h"
 #include "pipeline/store/refreeze.h"
 
 namespace meniscus::store {
@@ -120,7 +120,7 @@ VectorX told_design(const case_data::Case& input,
     const auto all =
         result.is_object() ? result.find("parameters") : result.end();
     const nlohmann::ordered_json* told =
-        all == result.end() ? nullptr : find_named(*all, name);
+        all == result.end() ? nullptr : files::find_named(*all, name);
     if (told == nullptr || !told->is_number()) {
       throw InvalidInput(fmt::format(
           "{}: it is damaged: no number for '{}' among its parameters; remove "
@@ -174,7 +174,7 @@ std::vector<std::string> answer_as_overrides(
   }
   const VectorX answer = answer_of_run(run, store.all(), folder);
   const nlohmann::ordered_json told =
-      named_json(case_data::design_names(run), answer);
+      files::named_json(case_data::design_names(run), answer);
   std::vector<std::string> overrides;
   for (const case_data::DesignRow& row : case_data::design_rows(run)) {
     if (has_row(input, row)) {

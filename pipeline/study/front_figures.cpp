@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pipeline/case_data/design_vectors.h"
-#include "pipeline/store/named_values.h"
+#include "pipeline/files/named_values.h"
 
 namespace meniscus::study {
 
@@ -64,7 +64,7 @@ nlohmann::ordered_json front_json(const case_data::Case& input,
         {second, point.second},
         {"end", point.end},
         {"parameters",
-         store::named_json(case_data::design_names(input), point.design)}};
+         files::named_json(case_data::design_names(input), point.design)}};
     if (point.own_mesh) {
       entry["own_mesh"] = {{first, point.own_mesh->first},
                            {second, point.own_mesh->second},

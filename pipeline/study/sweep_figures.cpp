@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "pipeline/case_data/design_vectors.h"
+#include "pipeline/files/named_values.h"
 #include "pipeline/responses/responses.h"
-#include "pipeline/store/named_values.h"
 
 namespace meniscus::study {
 
@@ -73,9 +73,9 @@ nlohmann::ordered_json sweep_json(const case_data::Case& input,
     const ResponseRange& range = figures.responses[k];
     json["responses"][input.responses[k].name] = {
         {"least", range.least},
-        {"least_at", store::named_json(names, range.least_at)},
+        {"least_at", files::named_json(names, range.least_at)},
         {"largest", range.largest},
-        {"largest_at", store::named_json(names, range.largest_at)},
+        {"largest_at", files::named_json(names, range.largest_at)},
         {"mean", range.mean}};
   }
   return json;

@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "pipeline/case_data/design_vectors.h"
+#include "pipeline/files/named_values.h"
 #include "pipeline/responses/responses.h"
-#include "pipeline/store/named_values.h"
 
 namespace meniscus::study {
 
@@ -72,7 +72,7 @@ nlohmann::ordered_json tolerance_json(const case_data::Case& input,
                {"failed", figures.failed},
                {"responses", Json::object()}};
   const std::vector<std::string> names = case_data::design_names(input);
-  json["deviations"] = store::named_json(
+  json["deviations"] = files::named_json(
       names, Eigen::Map<const VectorX>(input.study.deviations.data(),
                                        std::ssize(input.study.deviations)));
   for (std::size_t k = 0; k < input.responses.size(); ++k) {
@@ -81,7 +81,7 @@ nlohmann::ordered_json tolerance_json(const case_data::Case& input,
     if (row >= 0) {
       entry["deviation"] = figures.linear.deviation[row];
       entry["shares"] =
-          store::named_json(names, figures.linear.shares.row(row).transpose());
+          files::named_json(names, figures.linear.shares.row(row).transpose());
     }
     if (figures.sampled) {
       entry["sampled"] =

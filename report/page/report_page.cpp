@@ -10,8 +10,8 @@
 #include "core/error.h"
 #include "core/json.h"
 #include "pipeline/case_data/case_symmetry.h"
+#include "pipeline/files/named_values.h"
 #include "pipeline/forward/worst_cases.h"
-#include "pipeline/store/named_values.h"
 #include "pipeline/store/stored_case.h"
 #include "report/page/page_case.h"
 #include "report/page/page_evolved.h"
@@ -120,7 +120,7 @@ std::optional<StoredRun> stored_run(const fs::path& folder, const Json& result,
   for (std::size_t k = 0;
        result.contains("parameters") && k < run.input.design.size(); ++k) {
     const Json* value =
-        store::find_named(result["parameters"], run.input.design[k].name);
+        files::find_named(result["parameters"], run.input.design[k].name);
     if (value != nullptr && value->is_number()) {
       run.design[static_cast<Eigen::Index>(k)] = value->get<double>();
     }

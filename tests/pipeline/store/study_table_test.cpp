@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "pipeline/store/named_values.h"
+#include "pipeline/files/named_values.h"
 
 namespace meniscus::study_table_test {
 namespace {
@@ -89,21 +89,21 @@ TEST(StudyTable, CsvHasAColumnForEachElementAndPeopleOneForAll) {
 TEST(NamedValues, NestTheElementsOfVectors) {
   const store::EvaluationRecord record = record_of_vector();
   const nlohmann::ordered_json json =
-      store::named_json(record.input_names, record.inputs);
+      files::named_json(record.input_names, record.inputs);
   EXPECT_EQ(json.dump(), R"({"a":7.0,"t":[[0.5,-3.0],[12.0,4.0]]})");
   for (std::size_t k = 0; k < record.input_names.size(); ++k) {
-    const auto* value = store::find_named(json, record.input_names[k]);
+    const auto* value = files::find_named(json, record.input_names[k]);
     ASSERT_NE(value, nullptr);
     EXPECT_EQ(value->get<double>(),
               record.inputs[static_cast<Eigen::Index>(k)]);
   }
   for (const char* name :
        {"b", "t[3,1]", "t[1,3]", "t[1,1,1]", "a[1]", "t[0,1]", "t[", "u[1]"}) {
-    EXPECT_EQ(store::find_named(json, name), nullptr) << name;
+    EXPECT_EQ(files::find_named(json, name), nullptr) << name;
   }
-  EXPECT_TRUE(store::find_named(json, "t[1]")->is_array());
-  EXPECT_EQ(store::find_named(nlohmann::ordered_json(3), "t"), nullptr);
-  EXPECT_EQ(store::named_json({"a"}, VectorX()).dump(), "{}");
+  EXPECT_TRUE(files::find_named(json, "t[1]")->is_array());
+  EXPECT_EQ(files::find_named(nlohmann::ordered_json(3), "t"), nullptr);
+  EXPECT_EQ(files::named_json({"a"}, VectorX()).dump(), "{}");
 }
 
 }  // namespace

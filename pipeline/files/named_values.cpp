@@ -1,10 +1,10 @@
-#include "pipeline/store/named_values.h"
+#include "pipeline/files/named_values.h"
 
 #include <charconv>
 
 #include <nlohmann/json.hpp>
 
-namespace meniscus::store {
+namespace meniscus::files {
 
 namespace {
 
@@ -68,4 +68,4 @@ const nlohmann::ordered_json* find_named(const nlohmann::ordered_json& json,
   return at;
 }
 
-}  // namespace meniscus::store
+}  // namespace meniscus::files

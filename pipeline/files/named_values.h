@@ -9,7 +9,7 @@
 
 #include "core/types.h"
 
-namespace meniscus::store {
+namespace meniscus::files {
 
 /// {"foot": 25.0, "t": [[1.0, 2.0], [3.0, 4.0]]} of values by the names of
 /// design variables, as many as there are values; elements, "t[2,1]", in their
@@ -21,4 +21,4 @@ nlohmann::ordered_json named_json(const std::vector<std::string>& names,
 const nlohmann::ordered_json* find_named(const nlohmann::ordered_json& json,
                                          const std::string& name);
 
-}  // namespace meniscus::store
+}  // namespace meniscus::files
