@@ -206,10 +206,9 @@ bool judge_answer(StudyModels& models, const DeadlineMonitor& limited,
   std::size_t round = 0;
   while (models.has_dragged_answer()) {
     const StudyOutcome found = models.stage()->outcome();
-    if (found.ended_by_limit() || limited.expired()) {
-      // Of no use yet: with a higher limit the study goes on from its model.
+    if (limited.expired()) {
       models.warn(
-          "a limit ended the study: its best design was not evaluated on a "
+          "the time ended the study: its best design was not evaluated on a "
           "mesh of its own");
       return true;
     }
@@ -217,8 +216,8 @@ bool judge_answer(StudyModels& models, const DeadlineMonitor& limited,
       return false;
     }
     models.stage()->judge(found, models.input());
-    if (study.kind == case_data::StudyKind::Sweep) {
-      return true;  // its designs are given: there is nothing to go on with
+    if (study.kind == case_data::StudyKind::Sweep || found.ended_by_limit()) {
+      return true;  // nothing goes on: its designs are given, or used up
     }
     const bool kept = all_kept(models.stage()->outcome().constraints);
     if (all_kept(found.constraints) == kept || !study.refreeze ||

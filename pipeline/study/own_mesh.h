@@ -12,11 +12,12 @@
 
 namespace meniscus::study {
 
-/// The answer of a match or a minimum, or the best design of a sweep. Where a
-/// match or a minimum is not kept there, the study goes on from that model,
-/// once `hold_margins` has raised what the search is to hold there. `limited`
-/// says when there is no time for it. False where no mesh of its own can be
-/// made: nothing proves the answer.
+/// The answer of a match or a minimum, or the best design of a sweep; where
+/// study.max_evaluations ended it, by one evaluation more. Where a match or a
+/// minimum is not kept there, the study goes on from that model, once
+/// `hold_margins` has raised what the search is to hold there. `limited` says
+/// when there is no time for it. False where no mesh of its own can be made:
+/// nothing proves the answer.
 bool judge_answer(StudyModels& models, const DeadlineMonitor& limited,
                   const std::function<void()>& hold_margins);
 

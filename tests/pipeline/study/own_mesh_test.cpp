@@ -14,7 +14,7 @@ namespace {
 
 /// A strut whose head is shifted along x, farther than a mesh follows, for the
 /// least centre of mass above a bound.
-case_data::Case leaning_strut(double least_centre) {
+case_data::Case leaning_strut(double least_centre, int max_evaluations) {
   std::string text = changed(strut(), "[curves.base]",
                              "[design.lean]\ninitial = 0\nbounds = [-60, 60]\n"
                              "\n[curves.base]");
@@ -26,13 +26,15 @@ case_data::Case leaning_strut(double least_centre) {
          "direction = [1, 0, 0]\n\n"
          "[study]\nkind = \"minimize\"\nobjective = \"centre\"\n"
          "constraints = [{ response = \"centre\", min = " +
-         std::to_string(least_centre) + " }]\n";
+         std::to_string(least_centre) +
+         " }]\nmax_evaluations = " + std::to_string(max_evaluations) + "\n";
   return *reader::read_case_text(text, "case.toml").input;
 }
 
 /// A study of it, at its start.
 struct OpenStudy {
-  explicit OpenStudy(double least_centre) : input(leaning_strut(least_centre)) {
+  explicit OpenStudy(double least_centre, int max_evaluations = 400)
+      : input(leaning_strut(least_centre, max_evaluations)) {
     models.freeze();
   }
 
@@ -75,6 +77,40 @@ TEST(OwnMesh, ASearchThatLeavesItsReachGoesOnOnNewModels) {
     own = own || of_answer;
   }
   EXPECT_FALSE(others.empty());
+}
+
+// One evaluation more, and its figures are those that are judged.
+TEST(OwnMesh, TheBestOfALimitedSearchIsJudgedOnItsOwnMesh) {
+  constexpr int kMost = 3;
+  OpenStudy open(-20.0, kMost);
+  study::StudyModels& models = open.models;
+  models.stage()->conduct();
+  const VectorX best = models.stage()->outcome().best;
+  ASSERT_TRUE(models.stage()->outcome().ended_by_limit());
+  ASSERT_TRUE(models.has_dragged_answer());
+
+  ASSERT_TRUE(study::judge_answer(models, open.unlimited,
+                                  [] { FAIL() << "nothing goes on"; }));
+  const study::StudyOutcome& found = models.stage()->outcome();
+  EXPECT_EQ(found.status, study::RunStatus::Stopped);
+  EXPECT_EQ(found.best, best);
+  EXPECT_EQ(models.stage()->start().design, best);
+  EXPECT_EQ(found.objective, models.stage()->start().responses[1]);
+  EXPECT_EQ(std::ssize(open.store.all()), kMost + 1);
+  EXPECT_FALSE(models.has_dragged_answer());
+}
+
+TEST(OwnMesh, AStudyThatTheTimeEndedIsNotJudgedOnOne) {
+  OpenStudy open(-20.0, 3);
+  study::StudyModels& models = open.models;
+  models.stage()->conduct();
+  const study::DeadlineMonitor late(silent_monitor(), 1e-9);
+  ASSERT_TRUE(study::judge_answer(models, late, [] {}));
+  EXPECT_TRUE(models.has_dragged_answer());
+  study::RunResult result;
+  models.add_to(result);
+  EXPECT_THAT(result.warnings,
+              testing::ElementsAre(testing::HasSubstr("the time ended")));
 }
 
 /// Searches for a centre of mass that may be beyond the case's bound, by one of
