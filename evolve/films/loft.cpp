@@ -65,13 +65,14 @@ struct Walk {
 
 // Of all starts on `high` the one with the least sum of squared distances.
 Walk matched_walk(const Points& low, const std::vector<double>& low_along,
-                  const Points& high) {
+                  const Points& high, std::optional<bool> along) {
   const int m = static_cast<int>(high.size());
   const Vec3 low_centre = mean_of(low);
   const Vec3 high_centre = mean_of(high);
   const Vec3 low_area = polygon_area_vector(low);
   const Vec3 high_area = polygon_area_vector(high);
-  const bool forward = same_way(low_area, high_area, high_centre - low_centre);
+  const bool forward =
+      along.value_or(same_way(low_area, high_area, high_centre - low_centre));
   const Mat3 turn =
       turn_between(low_area, forward ? high_area : Vec3(-high_area));
   Walk best;
@@ -102,7 +103,8 @@ Walk matched_walk(const Points& low, const std::vector<double>& low_along,
 
 }  // namespace
 
-std::vector<Triangle> loft_band(const Points& low, const Points& high) {
+std::vector<Triangle> loft_band(const Points& low, const Points& high,
+                                std::optional<bool> same_way) {
   std::vector<Triangle> facets;
   if (low.empty() || high.empty()) {
     return facets;
@@ -110,7 +112,7 @@ std::vector<Triangle> loft_band(const Points& low, const Points& high) {
   const int n = static_cast<int>(low.size());
   const int m = static_cast<int>(high.size());
   const std::vector<double> along = shares(low);
-  const Walk walk = matched_walk(low, along, high);
+  const Walk walk = matched_walk(low, along, high, same_way);
   int i = 0;
   int j = 0;
   while (i < n || j < m) {

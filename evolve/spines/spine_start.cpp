@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <set>
 
 #include <Eigen/Geometry>
@@ -39,19 +40,24 @@ struct RimPlane {
   }
 };
 
-/// Whole turns of the rim around a place, seen along its plane's normal.
-bool within(const RimPlane& plane, const Points& rim, const Vec3& at) {
-  double turns = 0.0;
-  for (std::size_t k = 0; k < rim.size(); ++k) {
+/// Whole turns of a loop around a line, positive about its unit `axis`.
+int turns_about(const Vec3& at, const Vec3& axis, const Points& loop) {
+  double angle = 0.0;
+  for (std::size_t k = 0; k < loop.size(); ++k) {
     const auto flat = [&](const Vec3& p) -> Vec3 {
       const Vec3 d = p - at;
-      return d - plane.normal.dot(d) * plane.normal;
+      return d - axis.dot(d) * axis;
     };
-    const Vec3 a = flat(rim[k]);
-    const Vec3 b = flat(rim[(k + 1) % rim.size()]);
-    turns += std::atan2(plane.normal.dot(a.cross(b)), a.dot(b));
+    const Vec3 a = flat(loop[k]);
+    const Vec3 b = flat(loop[(k + 1) % loop.size()]);
+    angle += std::atan2(axis.dot(a.cross(b)), a.dot(b));
   }
-  return turns > std::numbers::pi;
+  return static_cast<int>(std::lround(angle / (2.0 * std::numbers::pi)));
+}
+
+/// Seen along its plane's normal, is the place within the rim?
+bool within(const RimPlane& plane, const Points& rim, const Vec3& at) {
+  return turns_about(at, plane.normal, rim) > 0;
 }
 
 /// Where the liquid meets a rim: what a cut leaves of it is joined to the rim.
@@ -63,6 +69,10 @@ struct Cut {
   Vec3 out = Vec3::Zero();
   double radius = 0.0;
   int spine = -1;  // that ends there
+  /// Of a rim of a bore: unit, towards the other rim, and where that is among
+  /// the cuts. The film's border there turns once about it.
+  Vec3 axis = Vec3::Zero();
+  int other = -1;
 
   bool cuts(const Vec3& p, double before) const {
     return !out.isZero() && (p - at).dot(out) > -before &&
@@ -322,17 +332,22 @@ struct SpineSite {
 
   void add_bores(const std::vector<SpineRim>& rims) {
     for (std::size_t k = 0; k < rims.size(); ++k) {
-      if (rims[k].bore < 0) {
+      if (rims[k].bore <= static_cast<int>(k)) {
         continue;
       }
-      const RimPlane plane(rims[k].points);
-      cuts.push_back(
-          {static_cast<int>(k), plane.middle, Vec3::Zero(), plane.radius});
-      if (rims[k].bore > static_cast<int>(k)) {
-        bores.emplace_back(rims[k].points, rims[rims[k].bore].points, field,
-                           kCell * thinnest);
-        add_wall(bores.back());
+      const std::array<int, 2> ends = {static_cast<int>(k), rims[k].bore};
+      for (int side = 0; side < 2; ++side) {
+        const RimPlane plane(rims[ends[side]].points);
+        const RimPlane opposite(rims[ends[1 - side]].points);
+        cuts.push_back({.rim = ends[side],
+                        .at = plane.middle,
+                        .radius = plane.radius,
+                        .axis = (opposite.middle - plane.middle).normalized(),
+                        .other = static_cast<int>(cuts.size()) + 1 - 2 * side});
       }
+      bores.emplace_back(rims[ends[0]].points, rims[ends[1]].points, field,
+                         kCell * thinnest);
+      add_wall(bores.back());
     }
   }
 };
@@ -406,6 +421,35 @@ double length_of_loop(const Points& loop) {
   return length;
 }
 
+/// The cut whose rim a loop may be joined to: of a bore the rim about whose
+/// axis it turns; none where it does not turn about the bore.
+std::optional<std::size_t> cut_of_loop(const std::vector<Cut>& cuts,
+                                       const Points& loop,
+                                       const std::string& film) {
+  const std::size_t nearest = nearest_cut(cuts, mean_of(loop), film);
+  const Cut& cut = cuts[nearest];
+  if (cut.other < 0) {
+    return nearest;
+  }
+  switch (turns_about(cut.at, cut.axis, loop)) {
+    case 1:
+      return nearest;
+    case -1:
+      return static_cast<std::size_t>(cut.other);
+    default:
+      return std::nullopt;
+  }
+}
+
+/// Whether both turn the same way about the cut; nothing where one does not.
+std::optional<bool> turn_alike(const Cut& cut, const Points& loop,
+                               const Points& rim) {
+  const Vec3& axis = cut.other < 0 ? cut.out : cut.axis;
+  const int turns =
+      turns_about(cut.at, axis, loop) * turns_about(cut.at, axis, rim);
+  return turns == 0 ? std::nullopt : std::optional(turns > 0);
+}
+
 /// Per cut the longest loop there, which is joined to the rim; others are holes
 /// where the cut pierces an arm beside it. Throws InvalidInput for a cut
 /// without one.
@@ -418,11 +462,11 @@ std::vector<int> longest_at_cuts(const std::vector<Cut>& cuts,
   std::vector<double> length(cuts.size(), 0.0);
   for (std::size_t k = 0; k < loops.size(); ++k) {
     const Points loop = points_of(loops[k], points);
-    const std::size_t cut = nearest_cut(cuts, mean_of(loop), film);
+    const std::optional<std::size_t> cut = cut_of_loop(cuts, loop, film);
     const double own = length_of_loop(loop);
-    if (own > length[cut]) {
-      length[cut] = own;
-      result[cut] = static_cast<int>(k);
+    if (cut && own > length[*cut]) {
+      length[*cut] = own;
+      result[*cut] = static_cast<int>(k);
     }
   }
   for (std::size_t k = 0; k < cuts.size(); ++k) {
@@ -528,8 +572,10 @@ SurfaceMesh spine_start(const std::vector<films::SpineSpec>& spines,
     const int rim = site.cuts[k].rim;
     const std::vector<int>& loop = loops[longest[k]];
     const auto count = static_cast<int>(loop.size());
+    const Points border = points_of(loop, level.points);
     for (Triangle t :
-         films::loft_band(points_of(loop, level.points), rims[rim].points)) {
+         films::loft_band(border, rims[rim].points,
+                          turn_alike(site.cuts[k], border, rims[rim].points))) {
       for (int& v : t) {
         v = v < count ? number[loop[v]] : first[rim] + v - count;
       }

@@ -4,9 +4,13 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <random>
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
+
+#include "evolve/films/loft.h"
 
 namespace meniscus::spine_start_test {
 namespace {
@@ -80,6 +84,28 @@ TEST(SpineStart, LiquidAboutABoreMayBeThinOrPiercedByTheCut) {
               3 * 24)
         << sample;
   }
+}
+
+// A border as high as its rim and a little askew, as one of a bracket's was:
+// the line between their middles says nothing of how they run, and the band
+// came out with one side.
+TEST(SpineStart, BandsRunAsTheyAreTold) {
+  const Vec3 askew = Vec3(-0.042, -0.053, -0.998).normalized();
+  const Points border =
+      rim("border", Vec3(-0.143, -0.101, 0.011), askew, 12.8, -1).points;
+  const Points ring = rim("rim", Vec3::Zero(), Vec3::UnitZ(), 12.84, -1).points;
+  Points all = border;
+  all.insert(all.end(), ring.begin(), ring.end());
+  const auto area = [&](std::optional<bool> same_way) {
+    double sum = 0.0;
+    for (const Triangle& t : films::loft_band(border, ring, same_way)) {
+      sum += 0.5 * (all[t[1]] - all[t[0]]).cross(all[t[2]] - all[t[0]]).norm();
+    }
+    return sum;
+  };
+  EXPECT_LT(area(false), 100.0);
+  EXPECT_GT(area(true), 500.0);
+  EXPECT_GT(area(std::nullopt), 500.0);  // by the line
 }
 
 }  // namespace
