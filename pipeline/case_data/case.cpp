@@ -150,16 +150,67 @@ void add_field(const Case& input, const FieldEntry& field,
   system.fields.push_back(std::move(spec));
 }
 
-void add_spine(const SpineEntry& spine, const CaseValues& values,
-               films::FilmSystem& system) {
+/// Of each point: the share of the way from the first to the last, along
+/// straight lines.
+std::vector<Dual1> shares_of_way(const SpineEntry& spine,
+                                 const CaseValues& values) {
+  std::vector<Dual1> shares(1, Dual1(0.0));
+  for (std::size_t k = 1; k < spine.points.size(); ++k) {
+    Dual1 square(0.0);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Dual1 step =
+          values.dual(spine.points[k][i]) - values.dual(spine.points[k - 1][i]);
+      square = square + step * step;
+    }
+    // Points that coincide are refused with the spine.
+    shares.push_back(shares.back() +
+                     (square.value > 0.0 ? sqrt(square) : Dual1(0.0)));
+  }
+  const Dual1 whole = shares.back();
+  for (Dual1& share : shares) {
+    share = whole.value > 0.0 ? share / whole : Dual1(0.0);
+  }
+  return shares;
+}
+
+/// Of a radius that knows how far along the spine it is.
+std::vector<double> radii_along(const Case& input, const SpineEntry& spine,
+                                const CaseValues& values) {
+  std::vector<double> radii;
+  for (const Dual1& share : shares_of_way(spine, values)) {
+    const std::array<double, 1> s = {share.value};
+    if (values.are_rates()) {
+      const std::array<double, 1> rate = {share.varies ? share.gradient[0]
+                                                       : 0.0};
+      radii.push_back(values.rate(spine.radii[0], s, rate));
+      continue;
+    }
+    radii.push_back(values.at(spine.radii[0], s));
+    if (!(radii.back() > 0.0)) {
+      values.problems().push_back(fmt::format(
+          "{}: {} is {:g} at s = {:g} of the spine; it must be above 0",
+          place(input, spine.line), spine.radii[0].key, radii.back(),
+          share.value));
+    }
+  }
+  return radii;
+}
+
+void add_spine(const Case& input, const SpineEntry& spine,
+               const CaseValues& values, films::FilmSystem& system) {
   films::SpineSpec spec{
       .name = spine.name, .body = spine.body, .smooth = spine.smooth};
   for (std::size_t k = 0; k < spine.points.size(); ++k) {
     spec.points.push_back(values.at(spine.points[k]));
-    spec.radii.push_back(
-        spine.radii.empty()
-            ? 0.0
-            : values.positive(spine.radii[spine.radii.size() > 1 ? k : 0]));
+    if (!spine.along) {
+      spec.radii.push_back(
+          spine.radii.empty()
+              ? 0.0
+              : values.positive(spine.radii[spine.radii.size() > 1 ? k : 0]));
+    }
+  }
+  if (spine.along) {
+    spec.radii = radii_along(input, spine, values);
   }
   spec.tension = values.positive(spine.tension);
   system.spines.push_back(std::move(spec));
@@ -245,7 +296,7 @@ films::FilmSystem films_of(const Case& input, const CaseValues& values) {
     add_field(input, field, values, system);
   }
   for (const SpineEntry& spine : input.spines) {
-    add_spine(spine, values, system);
+    add_spine(input, spine, values, system);
   }
   for (const FilletEntry& fillet : input.fillets) {
     add_fillets(fillet, values, system);

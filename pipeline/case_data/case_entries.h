@@ -260,6 +260,8 @@ struct SpineEntry {
   std::vector<QuantityVector> points;
   bool smooth = true;
   std::vector<Quantity> radii;  // one, or one per point
+  bool along = false;  // the one radius knows s after the case's names: the
+                       // share of the way along the points, from 0 to 1
   Quantity tension;
   SourceLine line = 0;
 };

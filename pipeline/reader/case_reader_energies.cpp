@@ -143,6 +143,30 @@ case_data::Quantity tension_of_spine(CaseContext& context,
   return {.expression = Expression(1.0), .line = table.line()};
 }
 
+/// One per point, or one for all, which may know how far along the spine a
+/// point is.
+void read_radii(CaseContext& context, const CaseTable& table,
+                case_data::SpineEntry& spine) {
+  const char* const share = "s";
+  const bool free = std::find(context.names.begin(), context.names.end(),
+                              share) == context.names.end();
+  const bool one = table.has("radius") && !table.node("radius")->is_array();
+  if (!free || !one) {
+    spine.radii = table.quantities("radius");
+    return;
+  }
+  const auto position = static_cast<int>(context.names.size());
+  context.names.emplace_back(share);
+  context.used.push_back(0);
+  spine.radii = table.quantities("radius");
+  context.names.pop_back();
+  context.used.pop_back();
+  const std::vector<int> used = spine.radii.empty()
+                                    ? std::vector<int>()
+                                    : spine.radii[0].expression.names_used();
+  spine.along = !used.empty() && used.back() == position;
+}
+
 }  // namespace
 
 TableSpec spine_table() {
@@ -160,7 +184,9 @@ TableSpec spine_table() {
         "left out",
         case_data::choices_of(spine_curves())},
        {"radius", K::Quantities, D::Length, true,
-        "of the arm, above 0; an array gives that at each point"},
+        "of the arm, above 0; an array gives that at each point, and so does "
+        "an "
+        "expression of s, from 0 at the first to 1 at the last"},
        {"body", K::Name, D::None, false,
         "whose liquid it holds; the only one when left out"},
        {"tension", K::Quantity, D::Tension, false,
@@ -175,7 +201,7 @@ void read_spines(CaseContext& context, const toml::table& root,
     spine.smooth = case_data::row_named(spine_curves(),
                                         table.choice("kind").value_or("spline"))
                        .value;
-    spine.radii = table.quantities("radius");
+    read_radii(context, table, spine);
     if (table.has("points") && spine.points.size() < 2) {
       context.problems.add(table.line("points"),
                            fmt::format("{}.points has {}; expected two or more",

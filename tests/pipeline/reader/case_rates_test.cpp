@@ -123,5 +123,63 @@ TEST(CaseRates, ExpressionsWithoutADerivativeAreNamed) {
   }
 }
 
+/// The strut with a spine of three points that is `radius` thick.
+std::string with_spine(const std::string& radius) {
+  return strut() +
+         "\n[spines.arm]\npoints = [[0, 0, 0], [\"foot / 2\", 0, "
+         "\"20 + foot / 5\"], [0, 0, \"length\"]]\nradius = \"" +
+         radius + "\"\n";
+}
+
+TEST(SpineRadii, FollowTheShareOfTheWayAndItsRate) {
+  const reader::CaseReading reading =
+      reader::read_case_text(with_spine("foot * (1 - 0.6 * s^2)"), "case.toml");
+  ASSERT_THAT(reading.problems, testing::IsEmpty());
+  const case_data::Case& input = *reading.input;
+  const auto radii_at = [&](double foot) {
+    return case_data::evaluate(input, VectorX::Constant(1, foot))
+        .film_system.spines[0]
+        .radii;
+  };
+  const std::vector<double> radii = radii_at(25.0);
+  const double first = Vec3(12.5, 0, 25).norm();
+  const double share = first / (first + Vec3(12.5, 0, 35).norm());
+  ASSERT_EQ(radii.size(), 3U);
+  EXPECT_DOUBLE_EQ(radii[0], 25.0);
+  EXPECT_DOUBLE_EQ(radii[1], 25.0 * (1.0 - 0.6 * share * share));
+  EXPECT_DOUBLE_EQ(radii[2], 10.0);
+  const std::vector<double> rates =
+      case_data::rates(input, VectorX::Constant(1, 25.0), 0)
+          .film_system.spines[0]
+          .radii;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double difference =
+        (radii_at(25.0 + kStep)[k] - radii_at(25.0 - kStep)[k]) / (2 * kStep);
+    EXPECT_NEAR(rates[k], difference, 1e-7) << k;
+  }
+}
+
+TEST(SpineRadii, AreAboveZeroAllTheWay) {
+  const reader::CaseReading reading =
+      reader::read_case_text(with_spine("10 - 12 * s"), "case.toml");
+  EXPECT_THAT(reading.problems,
+              testing::ElementsAre(testing::HasSubstr(
+                  "spines.arm.radius is -2 at s = 1 of the spine; it must")));
+}
+
+// A case that has the name keeps it, and lists know no way.
+TEST(SpineRadii, OfACasesOwnSAreThat) {
+  const std::string own =
+      changed(with_spine("3 + s"), "[parameters]\n", "[parameters]\ns = 2.0\n");
+  const reader::CaseReading reading = reader::read_case_text(own, "case.toml");
+  ASSERT_THAT(reading.problems, testing::IsEmpty());
+  EXPECT_FALSE(reading.input->spines[0].along);
+  const reader::CaseReading list = reader::read_case_text(
+      changed(with_spine("s"), "radius = \"s\"", "radius = [1, \"s\", 1]"),
+      "case.toml");
+  EXPECT_THAT(list.problems,
+              testing::Contains(testing::HasSubstr("unknown name 's'")));
+}
+
 }  // namespace
 }  // namespace meniscus::case_rates_test
