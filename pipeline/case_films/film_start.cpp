@@ -75,16 +75,16 @@ std::optional<frozen::FilmModel> lead(const case_data::Case& input,
   if (next || halvings == 0 || before.reference().failure) {
     return next;
   }
-  std::optional<Waypoint> middle;
-  if (!what_prevents([&] {
-         middle = waypoint_between(input, from, to);
-       }).empty()) {
-    return std::nullopt;
-  }
-  std::optional<frozen::FilmModel> half =
-      lead(input, before, from, *middle, halvings - 1, options);
-  return half ? lead(input, *half, *middle, to, halvings - 1, options)
-              : std::nullopt;
+  std::optional<frozen::FilmModel> led;
+  const std::string prevented = what_prevents([&] {
+    const Waypoint middle = waypoint_between(input, from, to);
+    std::optional<frozen::FilmModel> half =
+        lead(input, before, from, middle, halvings - 1, options);
+    if (half) {
+      led = lead(input, *half, middle, to, halvings - 1, options);
+    }
+  });
+  return prevented.empty() ? std::move(led) : std::nullopt;
 }
 
 void log_lost(const case_data::Case& input,

@@ -601,8 +601,20 @@ void StudyRun::warn() {
 }
 
 void StudyRun::count() {
+  models_.add_to(result_);
+  // An earlier run may have ended at a limit, on a mesh that this one does not
+  // come by.
+  const auto is_counted = [&](const store::EvaluationRecord& record) {
+    return store::is_study_model(record.model) &&
+           (record.failure || record.model == store::kStudyModel ||
+            std::any_of(result_.refrozen.begin(), result_.refrozen.end(),
+                        [&](const store::Refreeze& at) {
+                          return store::refrozen_model(at.evaluation) ==
+                                 record.model;
+                        }));
+  };
   for (const store::EvaluationRecord& record : store_.all()) {
-    if (store::is_study_model(record.model)) {
+    if (is_counted(record)) {
       ++result_.evaluations;
       result_.failed_evaluations += record.failure ? 1 : 0;
       auto& models = result_.evaluations_of_models;
@@ -613,8 +625,7 @@ void StudyRun::count() {
             .second;
     }
   }
-  result_.seconds = own_seconds_;
-  models_.add_to(result_);
+  result_.seconds += own_seconds_;
 }
 
 /// The best of what was evaluated, where a computation outlasted the limit.
