@@ -13,7 +13,6 @@
 namespace meniscus::film_way_test {
 namespace {
 
-using testing::Each;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
