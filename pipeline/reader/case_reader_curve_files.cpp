@@ -22,14 +22,6 @@ std::filesystem::path place_of(const case_data::Case& result,
   return std::filesystem::path(result.path).parent_path() / path;
 }
 
-const case_data::CaseFile* held_file(const case_data::Case& result,
-                                     const std::string& path) {
-  const auto at = std::find_if(
-      result.files.begin(), result.files.end(),
-      [&](const case_data::CaseFile& file) { return file.path == path; });
-  return at == result.files.end() ? nullptr : &*at;
-}
-
 /// Notes keys that belong to files of the other kind.
 void refuse_keys(CaseContext& context, const CaseTable& table,
                  const std::vector<const char*>& keys, const char* of) {
@@ -216,6 +208,14 @@ bool read_step_loop(CaseContext& context, const CaseTable& table,
                     const std::vector<std::string>& edges, const char* at,
                     case_data::Case& result, case_data::CurveEntry& curve) {
   return read_step_curve(context, table, path, {edges, {}, at}, result, curve);
+}
+
+const case_data::CaseFile* held_file(const case_data::Case& result,
+                                     const std::string& path) {
+  const auto at = std::find_if(
+      result.files.begin(), result.files.end(),
+      [&](const case_data::CaseFile& file) { return file.path == path; });
+  return at == result.files.end() ? nullptr : &*at;
 }
 
 const std::string* file_text(CaseContext& context, const CaseTable& table,

@@ -49,10 +49,7 @@ std::string earlier_run_text(const std::string& folder,
                              case_data::Case& result) {
   namespace fs = std::filesystem;
   const std::string path = (fs::path(folder) / "result.json").string();
-  const auto held = std::find_if(
-      result.files.begin(), result.files.end(),
-      [&](const case_data::CaseFile& file) { return file.path == path; });
-  if (held != result.files.end()) {
+  if (const case_data::CaseFile* held = held_file(result, path)) {
     return held->text;
   }
   const fs::path beside = fs::path(result.path).parent_path() / path;

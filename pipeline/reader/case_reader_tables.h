@@ -63,6 +63,10 @@ bool read_step_loop(CaseContext& context, const CaseTable& table,
 /// What the points of a csv file make.
 const std::vector<case_data::Named<case_data::CurveKind>>& point_curves();
 
+/// The file that the case holds under that path; null where it does not yet.
+const case_data::CaseFile* held_file(const case_data::Case& result,
+                                     const std::string& path);
+
 /// The text of the file that the key `file` names, from disk unless the case
 /// holds it, which it does from then on. Null with a problem noted; `expected`
 /// is for that.

@@ -149,20 +149,29 @@ case_data::Case elbow(double angle) {
   return *reading.input;
 }
 
+/// An elbow whose film begins from that of a run at another angle.
+struct Start {
+  Start(double angle, double of_run) : input(elbow(angle)) {
+    input.start = "easy";
+    input.way = {Eigen::Vector3d(20.0, 1000.0, of_run)};
+    inputs = case_data::evaluate(input, case_data::initial_design(input));
+    options = {.edge = 8.0, .refinements = 0, .monitor = &listener};
+  }
+
+  case_data::Case input;
+  case_data::EvaluatedCase inputs;
+  Listener listener;
+  frozen::FilmModelOptions options;
+};
+
 // The film cannot turn from 5 to 120 degrees at once, and is led there.
 TEST(FilmStart, FollowsAlongStepsThatAreHalved) {
-  case_data::Case input = elbow(120.0);
-  const case_data::EvaluatedCase inputs =
-      case_data::evaluate(input, case_data::initial_design(input));
-  Listener listener;
-  const frozen::FilmModelOptions options{
-      .edge = 8.0, .refinements = 0, .monitor = &listener};
+  const Start start(120.0, 5.0);
+  const auto& [input, inputs, listener, options] = start;
   const frozen::FilmModel raw =
       frozen::FilmModel::freeze(inputs.film_system, options);
   ASSERT_FALSE(raw.reference().failure);
 
-  input.start = "easy";
-  input.way = {Eigen::Vector3d(20.0, 1000.0, 5.0)};
   const frozen::FilmModel easy =
       frozen::FilmModel::freeze(way_of(input).front().system, options);
   ASSERT_FALSE(easy.reference().failure);
@@ -179,14 +188,8 @@ TEST(FilmStart, FollowsAlongStepsThatAreHalved) {
 
 // Where it is not, it starts from first facets, and the user hears it.
 TEST(FilmStart, SaysWhereAFilmDoesNotFollow) {
-  case_data::Case input = elbow(60.0);
-  const case_data::EvaluatedCase inputs =
-      case_data::evaluate(input, case_data::initial_design(input));
-  Listener listener;
-  const frozen::FilmModelOptions options{
-      .edge = 8.0, .refinements = 0, .monitor = &listener};
-  input.start = "easy";
-  input.way = {Eigen::Vector3d(20.0, 1000.0, 175.0)};  // pinches
+  const Start start(60.0, 175.0);  // which pinches
+  const auto& [input, inputs, listener, options] = start;
   const frozen::FilmModel found =
       case_films::freeze_films(input, inputs, options);
   EXPECT_FALSE(found.reference().failure);
