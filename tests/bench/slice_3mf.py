@@ -35,8 +35,8 @@ def check(program, case):
         info = dict(re.findall(r"^(\w+) = +(\S+)$",
                                call("prusa-slicer", "--info", part), re.M))
         film = json.loads((folder / "run" / "result.json").read_text())["film"]
-        (body,) = film["bodies"].values()
-        off = float(info["volume"]) / body["volume"] - 1
+        held = sum(body["volume"] for body in film["bodies"].values())
+        off = float(info["volume"]) / held - 1
         call("prusa-slicer", "--export-gcode", "--layer-height", LAYER,
              "--bed-shape", "0x0,400x0,400x400,0x400", "--max-print-height",
              "400", "--support-material", "--output", folder / "part.gcode",

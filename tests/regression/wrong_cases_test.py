@@ -541,17 +541,18 @@ WRONG = {
               "check case.toml --set long=15"),
     ],
     "ge_bracket": [
-        Wrong("swapped", "a bolt's seat and the rim of a well",
-              swapped('"seat_c", "seat_d"]', '"rim_a", "rim_b"]'), 2,
-              (r"curve 'outline': a hole is not inside the curve around it",)),
-        Wrong("open", "the part without its vault",
-              {'["skin", "vault", ': '["skin", '}, 2,
-              not_closed("part", "pocket", "add 'lid'"),
+        Wrong("swapped", "the washers' collars and undersides",
+              swapped('inner = "sole_{i}"', 'inner = "brow_{i}"'), 2,
+              not_closed("part", "sole_1", "add 'sole_1'"),
               'enclosed_by = ["skin"'),
-        Wrong("crossing", "lugs beyond the plateau", {}, 2,
-              (r"case\.toml:{line}: curves 'crest' and 'lug_near/front' meet "
-               r"near \(.*other curves must keep apart",), "[solids.lug_near]",
-              "check case.toml --set pin_x=-10"),
+        Wrong("open", "the part without the pin's bores",
+              {', { name = "pin_{i}", repeat = 2 }]\npressure': ']\npressure'}, 2,
+              not_closed("part", "pin_front_1", "add 'pin_1'"),
+              'enclosed_by = ["skin"'),
+        Wrong("crossing", "seats that meet", {}, 2,
+              (r"case\.toml:{line}: curves 'seat_3' and 'seat_4' meet near "
+               r"\(.*other curves must keep apart",), "[curves.seat]",
+              "check case.toml --set seat_r=20"),
     ],
     "h_beam_casting": [
         Wrong("swapped", "the rings of both blends",
