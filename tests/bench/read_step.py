@@ -13,7 +13,7 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 READER = ROOT / "tests/peers/freecad_step.py"
-CASES = ["two_arm", "two_arm_sized", "strut_family", "ge_bracket"]
+CASES = ["two_arm", "two_arm_sized", "strut_family"]
 SETTINGS = ["--set", "study.kind=analyse", "--no-pictures", "--quiet"]
 VOLUME = 1e-3  # relative
 CENTRE = 1e-3  # of the surface's size
