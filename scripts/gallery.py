@@ -61,7 +61,7 @@ def allowed(row):
             else f"{100 * cases.room_of(row.figure) / abs(row.wanted):g} %")
     for key, sign in (("at_least", ">="), ("at_most", "<=")):
         if key in row.figure:
-            words.append(f"{sign} {row.figure[key] * row.figure.get('scale', 1):g}")
+            words.append(f"{sign} {scaled(row, row.figure[key])}")
     return ", ".join(words)
 
 
