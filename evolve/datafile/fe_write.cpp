@@ -52,10 +52,16 @@ class FeWriter {
       quantity(static_cast<int>(q));
     }
     for (std::size_t s = 0; s < complex_.surfaces.size(); ++s) {
-      if (complex_.surfaces[s].tension_field) {
-        add("quantity tension_of_surface_{} energy method "
-            "facet_scalar_integral\nscalar_integrand: {}\n",
-            s + 1, text(with_numbers(*complex_.surfaces[s].tension_field)));
+      const films::ComplexSurface& surface = complex_.surfaces[s];
+      if (has_integral(surface)) {
+        add("quantity tension_of_surface_{} energy method {}\n"
+            "scalar_integrand: ({}){}\n",
+            s + 1,
+            surface.drop_shape.empty() ? "facet_scalar_integral"
+                                       : "facet_general_integral",
+            surface.tension_field ? text(with_numbers(*surface.tension_field))
+                                  : fmt::format("{}", surface.tension),
+            support(surface.drop_shape));
       }
     }
     elements();
@@ -218,6 +224,25 @@ class FeWriter {
     }
   }
 
+  static bool has_integral(const films::ComplexSurface& surface) {
+    return surface.tension_field || !surface.drop_shape.empty();
+  }
+
+  /// " * g(N)" of a facet's normal x4, x5, x6; nothing where g is 1.
+  static std::string support(const films::DropShape& shape) {
+    std::string sum;
+    for (const films::Spheroid& part : shape) {
+      const Vec3 axis = part.axis.normalized();
+      const double across = part.across * part.across;
+      sum += fmt::format(
+          "{}sqrt({}*(x4^2 + x5^2 + x6^2) + ({})*(({})*x4 + ({})*x5 + "
+          "({})*x6)^2)",
+          sum.empty() ? " * (" : " + ", across,
+          part.along * part.along - across, axis.x(), axis.y(), axis.z());
+    }
+    return sum.empty() ? sum : sum + ")";
+  }
+
   // Names go into comments.
   static std::string one_line(std::string name) {
     std::replace_if(
@@ -327,7 +352,7 @@ class FeWriter {
     }
     const int label = complex_.mesh.facet_label[index];
     const films::ComplexSurface& surface = complex_.surfaces[label];
-    const double tension = surface.tension_field ? 0.0 : surface.tension;
+    const double tension = has_integral(surface) ? 0.0 : surface.tension;
     if (tension != 1.0) {
       add(" tension {}", tension);
     }
@@ -338,7 +363,7 @@ class FeWriter {
       add(" no_refine");
     }
     constraints(surface.constraints);
-    if (surface.tension_field) {
+    if (has_integral(surface)) {
       add(" tension_of_surface_{}", label + 1);
     }
     for (std::size_t q = 0; q < complex_.quantities.size(); ++q) {

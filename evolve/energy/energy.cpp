@@ -58,7 +58,10 @@ FilmEnergy::FilmEnergy(const films::FilmComplex& complex, FilmMotion motion)
     counted_.push_back(surface.liquid || flat ? 1 : 0);
     flat_.push_back(flat ? std::optional(surface.wetted->normal)
                          : std::nullopt);
-    plain_.push_back(counted_.back() != 0 && !surface.tension_field ? 1 : 0);
+    plain_.push_back(counted_.back() != 0 && !surface.tension_field &&
+                             surface.drop_shape.empty()
+                         ? 1
+                         : 0);
     tense_.push_back(plain_.back() != 0 || bent ? 1 : 0);
     if (bent) {
       add_bent_area(complex, static_cast<int>(side_.size()));

@@ -69,7 +69,7 @@ class FilmEnergy {
   /// sum weight x area.
   VectorX areas(const Points& points) const;
   Points area_gradient(const Points& points, const VectorX& weight) const;
-  /// False: caps, and films whose tension is a field.
+  /// False: caps, and films whose tension is a field or turns with them.
   bool has_tension(int surface) const { return tense_[surface] != 0; }
 
   /// What of a gradient (one per vertex) runs along each unknown's direction.
@@ -178,8 +178,10 @@ class FilmEnergy {
   std::vector<double> modulus_;  // per quantity: what its terms carry
   std::vector<int> floating_;    // per unknown: floating part, or -1
   int floating_count_ = 0;
-  bool resisted_ = false;          // by fields in space: nothing floats
-  Vec3 gravity_ = Vec3::Zero();    // zero where nothing has weight
+  bool resisted_ = false;        // by fields in space: nothing floats
+  Vec3 gravity_ = Vec3::Zero();  // zero where nothing has weight
+  /// Per floating part: what of rotations its films' tensions resist.
+  std::vector<Eigen::Matrix3d> turn_resistance_;
   std::vector<int> corner_start_;  // per facet: into corners_
   std::vector<Corner> corners_;
   std::vector<int> element_start_;  // per facet: into elements

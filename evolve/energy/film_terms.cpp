@@ -14,6 +14,17 @@
 
 namespace meniscus::energy {
 
+namespace {
+
+/// Of a film whose tension is one number, the first of its own.
+PlaceField own_tension() {
+  PlaceField field(Expression::parse("tension", {"x", "y", "z", "tension"}));
+  field.names = {"tension"};
+  return field;
+}
+
+}  // namespace
+
 /// Collects terms; keeps their order fixed.
 class FilmTermBuilder {
  public:
@@ -60,8 +71,10 @@ class FilmTermBuilder {
   void add_tension() {
     for (std::size_t s = 0; s < complex_.surfaces.size(); ++s) {
       const films::ComplexSurface& surface = complex_.surfaces[s];
-      if (surface.liquid && surface.tension_field) {
-        add(scalar_term(*surface.tension_field),
+      if (surface.liquid &&
+          (surface.tension_field || !surface.drop_shape.empty())) {
+        add(scalar_term(surface.tension_field.value_or(own_tension()),
+                        static_cast<int>(surface.drop_shape.size())),
             facets_of({static_cast<int>(s)}, 1.0), -1, -1,
             static_cast<int>(complex_.quantities.size() + s));
       }
@@ -376,8 +389,7 @@ films::FilmTargets targets_of(const films::FilmComplex& complex) {
                                   : quantity.scalar.numbers);
   }
   for (const films::ComplexSurface& surface : complex.surfaces) {
-    targets.numbers.push_back(
-        surface.tension_field ? surface.tension_field->numbers : VectorX());
+    targets.numbers.push_back(films::tension_numbers(surface));
   }
   return targets;
 }

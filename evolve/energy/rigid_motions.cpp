@@ -12,6 +12,22 @@
 
 namespace meniscus::energy {
 
+namespace {
+
+/// Turning a spheroid about its own axis changes nothing.
+Eigen::Matrix3d resistance_of(const films::DropShape& shape) {
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for (const films::Spheroid& part : shape) {
+    if (part.along != part.across) {
+      const Vec3 axis = part.axis.normalized();
+      sum += Eigen::Matrix3d::Identity() - axis * axis.transpose();
+    }
+  }
+  return sum;
+}
+
+}  // namespace
+
 void FilmEnergy::find_floating(const films::FilmComplex& complex) {
   floating_.assign(unknowns(), -1);
   if (resisted_) {
@@ -51,6 +67,14 @@ void FilmEnergy::find_floating(const films::FilmComplex& complex) {
         number[root] = floating_count_++;
       }
       floating_[i] = number[root];
+    }
+  }
+  turn_resistance_.assign(floating_count_, Eigen::Matrix3d::Zero());
+  for (std::size_t f = 0; f < facets_.size(); ++f) {
+    const int part = number[parts.root(facets_[f][0])];
+    if (part >= 0) {
+      turn_resistance_[part] +=
+          resistance_of(complex.surfaces[label_[f]].drop_shape);
     }
   }
 }
@@ -104,6 +128,7 @@ Eigen::MatrixXd FilmEnergy::rigid_motions(const Points& points,
       resists.topLeftCorner<3, 3>() += g * g.transpose();
       resists.bottomRightCorner<3, 3>() += across;
     }
+    resists.bottomRightCorner<3, 3>() += turn_resistance_[part];
     const auto eigen = symmetric_eigen(resists);
     const double most = std::max(1.0, eigen.values[5]);
     Eigen::MatrixXd found(n, 0);

@@ -9,8 +9,10 @@
 #include <Eigen/Geometry>
 
 #include "core/math/gauss_rule.h"
+#include "evolve/energy/facet_size.h"
 #include "evolve/energy/film_space.h"
 #include "evolve/energy/flux_jet.h"
+#include "evolve/films/drop_shape.h"
 
 namespace meniscus::energy {
 
@@ -37,21 +39,33 @@ class FluxTerm : public FilmTerm {
   FieldFunction field_;
 };
 
-/// The size of N and its derivative by the corners.
-struct NormalSize {
+/// What a facet counts for and its derivative by the corners.
+struct GrowingFacet {
   NormalJet n;
-  double size;
-  Vec3 unit = Vec3::Zero();  // of a facet without area 0
+  FacetSize size;
   FilmTerm::Vector9 grow = FilmTerm::Vector9::Zero();
 
-  explicit NormalSize(const FilmTerm::Corners& c)
-      : n(c), size(n.normal.norm()) {
-    if (size > 0.0) {
-      unit = n.normal / size;
-      for (int i = 0; i < 3; ++i) {
-        grow.segment<3>(3 * i) = n.slope[i].transpose() * unit;
-      }
+  GrowingFacet(const FilmTerm::Corners& c, Numbers spheroids)
+      : n(c), size(facet_size(n.normal, spheroids)) {
+    grow = by_corners(size.slope);
+  }
+
+  /// Of what grows with N by so much.
+  FilmTerm::Vector9 by_corners(const Vec3& slope) const {
+    FilmTerm::Vector9 all;
+    for (int i = 0; i < 3; ++i) {
+      all.segment<3>(3 * i) = n.slope[i].transpose() * slope;
     }
+    return all;
+  }
+
+  /// Of N as corners move.
+  Vec3 turn(const FilmTerm::Corners& motion) const {
+    Vec3 sum = Vec3::Zero();
+    for (int i = 0; i < 3; ++i) {
+      sum += n.slope[i] * motion[i];
+    }
+    return sum;
   }
 };
 
@@ -73,16 +87,19 @@ FilmTerm::Vector9 shared(const QuadraturePoint& q, const Vec3& v) {
 /// Integral of a scalar over facets.
 class ScalarTerm : public FilmTerm {
  public:
-  explicit ScalarTerm(PlaceField scalar) : scalar_(std::move(scalar)) {}
+  ScalarTerm(PlaceField scalar, int spheroids)
+      : scalar_(std::move(scalar)), spheroids_(spheroids) {}
 
-  bool has_numbers() const override { return scalar_.has_numbers(); }
+  bool has_numbers() const override {
+    return scalar_.has_numbers() || spheroids_ > 0;
+  }
   bool is_costly() const override { return !scalar_.is_constant(); }
 
   FacetJet jet(const Element& element, const Corners& c, JetOrder order,
                Numbers numbers) const override {
-    const NormalSize n(c);
+    const GrowingFacet n(c, spheroids(numbers));
     FacetJet sum;
-    if (!(n.size > 0.0)) {
+    if (!(n.size.value > 0.0)) {
       return sum;
     }
     double mean = 0.0;
@@ -100,28 +117,26 @@ class ScalarTerm : public FilmTerm {
         continue;
       }
       const Vector9 pull = shared(q, f.gradient);
-      sum.gradient += w * n.size * pull;
+      sum.gradient += w * n.size.value * pull;
       if (order == JetOrder::Hessian) {
         sum.hessian +=
             w * (pull * n.grow.transpose() + n.grow * pull.transpose());
         for (int i = 0; i < 3; ++i) {
           for (int j = 0; j < 3; ++j) {
             sum.hessian.block<3, 3>(3 * i, 3 * j) +=
-                w * n.size * l[i] * l[j] * f.hessian;
+                w * n.size.value * l[i] * l[j] * f.hessian;
           }
         }
       }
     }
-    sum.value = mean * n.size;
+    sum.value = mean * n.size.value;
     sum.gradient += mean * n.grow;
     if (order == JetOrder::Hessian) {
-      const Eigen::Matrix3d across =
-          (Eigen::Matrix3d::Identity() - n.unit * n.unit.transpose()) / n.size;
       for (int i = 0; i < 3; ++i) {
         for (int j = 0; j < 3; ++j) {
           sum.hessian.block<3, 3>(3 * i, 3 * j) +=
-              mean * (n.n.slope[i].transpose() * across * n.n.slope[j] +
-                      NormalJet::bend(n.unit, i, j));
+              mean * (n.n.slope[i].transpose() * n.size.curve * n.n.slope[j] +
+                      NormalJet::bend(n.size.slope, i, j));
         }
       }
     }
@@ -131,40 +146,75 @@ class ScalarTerm : public FilmTerm {
   void add_by_numbers(const Element& element, const Corners& c,
                       const Corners& motion, double factor, Numbers numbers,
                       VectorX& sum) const override {
-    const NormalSize n(c);
+    const GrowingFacet n(c, spheroids(numbers));
     const double growth = n.grow.dot(stacked(motion));
+    double mean = 0.0;
+    double pull = 0.0;  // how fast the mean changes
     for (const QuadraturePoint& q : facet_rule()) {
       const double w = 0.5 * factor * element.sign * q.weight;
-      meniscus::add_by_numbers(scalar_, numbers, q.at(c), w * growth,
-                               w * n.size * q.at(motion), sum);
+      if (scalar_.has_numbers()) {
+        meniscus::add_by_numbers(scalar_, numbers, q.at(c), w * growth,
+                                 w * n.size.value * q.at(motion), sum);
+      }
+      if (spheroids_ > 0) {
+        const PlaceJet f = jet_at(scalar_, numbers, q.at(c));
+        mean += w * f.value;
+        pull += w * f.gradient.dot(q.at(motion));
+      }
     }
+    add_by_spheroids(n.n.normal, spheroids(numbers), pull,
+                     mean * n.turn(motion), sum, first_spheroid(numbers));
   }
 
   void add_value_by_numbers(const Element& element, const Corners& c,
                             double factor, Numbers numbers,
                             VectorX& sum) const override {
-    const NormalSize n(c);
+    const GrowingFacet n(c, spheroids(numbers));
+    double mean = 0.0;
     for (const QuadraturePoint& q : facet_rule()) {
-      meniscus::add_by_numbers(scalar_, numbers, q.at(c),
-                               0.5 * factor * element.sign * q.weight * n.size,
-                               Vec3::Zero(), sum);
+      const double w = 0.5 * factor * element.sign * q.weight;
+      if (scalar_.has_numbers()) {
+        meniscus::add_by_numbers(scalar_, numbers, q.at(c), w * n.size.value,
+                                 Vec3::Zero(), sum);
+      }
+      mean += spheroids_ > 0 ? w * value_at(scalar_, numbers, q.at(c)) : 0.0;
     }
+    add_by_spheroids(n.n.normal, spheroids(numbers), mean, Vec3::Zero(), sum,
+                     first_spheroid(numbers));
   }
 
   Vector9 gradient_rate(const Element& element, const Corners& c,
                         Numbers numbers, Numbers rates) const override {
-    const NormalSize n(c);
+    const GrowingFacet n(c, spheroids(numbers));
+    const FacetSize moving =
+        facet_size_rate(n.n.normal, spheroids(numbers), spheroids(rates));
+    const Vector9 grow_rate = n.by_corners(moving.slope);
     Vector9 sum = Vector9::Zero();
     for (const QuadraturePoint& q : facet_rule()) {
-      const PlaceJet f = rate_at(scalar_, numbers, rates, q.at(c));
+      const PlaceJet rate = rate_at(scalar_, numbers, rates, q.at(c));
       const double w = 0.5 * element.sign * q.weight;
-      sum += w * (n.size * shared(q, f.gradient) + f.value * n.grow);
+      sum +=
+          w * (n.size.value * shared(q, rate.gradient) + rate.value * n.grow);
+      if (spheroids_ > 0) {
+        const PlaceJet f = jet_at(scalar_, numbers, q.at(c));
+        sum += w * (moving.value * shared(q, f.gradient) + f.value * grow_rate);
+      }
     }
     return sum;
   }
 
  private:
+  std::size_t first_spheroid(Numbers numbers) const {
+    return numbers.size() -
+           static_cast<std::size_t>(spheroids_ * films::kSpheroidNumbers);
+  }
+  Numbers spheroids(Numbers numbers) const {
+    return spheroids_ == 0 ? Numbers()
+                           : numbers.subspan(first_spheroid(numbers));
+  }
+
   PlaceField scalar_;
+  int spheroids_;
 };
 
 /// Integral of a scalar over a body, by the flux of a radial field.
@@ -356,8 +406,8 @@ std::unique_ptr<FilmTerm> flux_term(FieldFunction field) {
   return std::make_unique<FluxTerm>(std::move(field));
 }
 
-std::unique_ptr<FilmTerm> scalar_term(PlaceField scalar) {
-  return std::make_unique<ScalarTerm>(std::move(scalar));
+std::unique_ptr<FilmTerm> scalar_term(PlaceField scalar, int spheroids) {
+  return std::make_unique<ScalarTerm>(std::move(scalar), spheroids);
 }
 
 std::unique_ptr<FilmTerm> body_term(PlaceField scalar,

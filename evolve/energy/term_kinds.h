@@ -10,8 +10,9 @@ namespace meniscus::energy {
 /// Integral of F . n over facets.
 std::unique_ptr<FilmTerm> flux_term(FieldFunction field);
 
-/// Integral of a field over facets.
-std::unique_ptr<FilmTerm> scalar_term(PlaceField scalar);
+/// Integral of a field over facets, whose areas count by so many spheroids
+/// (evolve/energy/facet_size.h). Their numbers follow the field's.
+std::unique_ptr<FilmTerm> scalar_term(PlaceField scalar, int spheroids = 0);
 
 /// Integral of a field over what facets enclose, or cones to `origin`.
 std::unique_ptr<FilmTerm> body_term(PlaceField scalar,

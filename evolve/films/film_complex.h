@@ -13,6 +13,7 @@
 #include "core/geometry/surface_mesh.h"
 #include "core/math/place_field.h"
 #include "evolve/films/bent_wall.h"
+#include "evolve/films/drop_shape.h"
 #include "evolve/films/film_system.h"
 #include "evolve/films/ruled_band.h"
 #include "evolve/films/spine_spec.h"
@@ -92,6 +93,7 @@ struct ComplexSurface {
   bool liquid = true;    // false: solid, its facets carry no tension
   double tension = 0.0;  // [force/length]; 0 on caps that wet no wall
   std::optional<PlaceField> tension_field;  // replaces tension
+  DropShape drop_shape;                     // of a tension that turns
   bool refine = true;                       // false: facets stay as they are
   int constraints = -1;  // of the vertices born inside it (obstacles)
   int band = -1;         // of a ring: index into bands

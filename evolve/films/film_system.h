@@ -14,6 +14,7 @@
 #include "core/math/place_field.h"
 #include "evolve/curves/curve.h"
 #include "evolve/films/bent_wall.h"
+#include "evolve/films/drop_shape.h"
 #include "evolve/films/field_spec.h"
 #include "evolve/films/spine_spec.h"
 
@@ -39,6 +40,7 @@ struct FilmSpec {
   std::vector<std::string> curves;
   double tension = 1.0;  // energy per area of the whole film [force/length]
   std::optional<PlaceField> tension_field;   // replaces tension
+  DropShape drop_shape;                      // of a tension that turns
   std::shared_ptr<const StartFacets> start;  // of Facets
   double within = 0.0;  // its rims may be so far off their curves [length]
 };

@@ -14,8 +14,8 @@ struct FilmTargets {
   std::vector<ComplexBody> bodies;  // volume or pressure asked; after them one
                                     // per held quantity, its target as volume
   /// The numbers of fields that follow the design: per quantity those of its
-  /// scalar or its poles (evolve/energy/pole_field.h), then per surface those
-  /// of its tension field. Empty: none.
+  /// scalar or its poles (evolve/energy/pole_field.h), then per surface its
+  /// tension_numbers(). Empty: none.
   std::vector<VectorX> numbers;
 };
 

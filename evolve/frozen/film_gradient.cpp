@@ -173,8 +173,8 @@ std::vector<VectorX> FilmModel::Impl::number_rates(
   }
   for (const films::ComplexSurface& surface : complex.surfaces) {
     const films::FilmSpec* film =
-        surface.tension_field ? find_named(rates.films, surface.name) : nullptr;
-    result.push_back(film != nullptr ? film->tension_field->numbers
+        surface.liquid ? find_named(rates.films, surface.name) : nullptr;
+    result.push_back(film != nullptr ? films::tension_numbers(*film)
                                      : VectorX());
   }
   return result;

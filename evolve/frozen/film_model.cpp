@@ -138,16 +138,15 @@ films::FilmTargets FilmModel::Impl::targets_of_system(
     }
     const std::optional<PlaceField>& field = complex.surfaces[s].tension_field;
     if (film->tension_field.has_value() != field.has_value() ||
-        (field && !is_same_but_numbers(*film->tension_field, *field))) {
+        (field && !is_same_but_numbers(*film->tension_field, *field)) ||
+        film->drop_shape.size() != complex.surfaces[s].drop_shape.size()) {
       throw InvalidInput(fmt::format(
           "the design changes the tension field of film '{}'; it belongs to "
           "the frozen model: freeze another one",
           film->name));
     }
-    if (field) {
-      result.numbers[complex.quantities.size() + s] =
-          film->tension_field->numbers;
-    }
+    result.numbers[complex.quantities.size() + s] =
+        films::tension_numbers(*film);
     if (!field) {
       result.tension[s] = film->tension;
     }
@@ -674,10 +673,8 @@ films::FilmComplex FilmModel::Impl::at_design(
   const films::FilmTargets goal = targets_of_system(system);
   for (std::size_t s = 0; s < at.surfaces.size(); ++s) {
     at.surfaces[s].tension = goal.tension[s];
-    if (at.surfaces[s].tension_field) {
-      at.surfaces[s].tension_field->numbers =
-          goal.numbers[at.quantities.size() + s];
-    }
+    films::set_tension_numbers(goal.numbers[at.quantities.size() + s],
+                               at.surfaces[s]);
   }
   for (std::size_t b = 0; b < at.bodies.size(); ++b) {
     at.bodies[b].volume = goal.bodies[b].volume;

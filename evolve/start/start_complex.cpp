@@ -250,8 +250,8 @@ class StartBuilder {
   }
 
   void add_film(const films::FilmSpec& film) {
-    const int label =
-        add_surface({film.name, true, film.tension, film.tension_field});
+    const int label = add_surface(
+        {film.name, true, film.tension, film.tension_field, film.drop_shape});
     if (film.tension_field) {
       result_.surfaces[label].tension_field->positive = true;
     }

@@ -255,6 +255,21 @@ void refine_curves(const Case& input, films::FilmSystem& system) {
   }
 }
 
+films::Spheroid spheroid_of(const SpheroidEntry& part,
+                            const CaseValues& values) {
+  const std::size_t before = values.problems().size();
+  const films::Spheroid result{values.at(part.axis),
+                               values.positive(part.along),
+                               values.positive(part.across)};
+  if (!values.are_rates() && values.problems().size() == before &&
+      result.axis.isZero(0.0)) {
+    values.problems().push_back(
+        fmt::format("{}: axis is (0, 0, 0){}; expected a direction", part.key,
+                    values.where(part.axis)));
+  }
+  return result;
+}
+
 films::FilmSystem films_of(const Case& input, const CaseValues& values) {
   films::FilmSystem system;
   system.curves = curves_of(input, values);
@@ -265,6 +280,9 @@ films::FilmSystem films_of(const Case& input, const CaseValues& values) {
       spec.tension_field = values.place_field(film.tension);
     } else {
       spec.tension = values.positive(film.tension.quantity);
+    }
+    for (const SpheroidEntry& part : film.drop) {
+      spec.drop_shape.push_back(spheroid_of(part, values));
     }
     if (!film.facets.empty() && !values.are_rates()) {
       spec.start = start_of(film, values);

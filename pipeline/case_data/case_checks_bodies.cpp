@@ -164,11 +164,14 @@ void check_wetted_curve(const Case& input, const CapEntry& cap,
     }
     ends.push_back(film.spec.name);
     ++films;
-    if (film.tension.of_place) {
-      problems.add(cap.line,
-                   fmt::format("film '{}' slides on the wall of '{}', and its "
-                               "tension depends on the place; give it a number",
-                               film.spec.name, cap.spec.name));
+    if (!film.has_one_tension()) {
+      problems.add(
+          cap.line,
+          fmt::format("film '{}' slides on the wall of '{}', and its tension "
+                      "depends on {}; give it {}",
+                      film.spec.name, cap.spec.name,
+                      film.tension.of_place ? "the place" : "how it is turned",
+                      film.tension.of_place ? "a number" : "no `drop`"));
     }
   }
   for (const CapEntry& other : input.caps) {

@@ -123,9 +123,20 @@ struct MergedCurves {
   int dropped = 0;
 };
 
+/// One of the spheroids whose sum is the shape of a film's free drops.
+struct SpheroidEntry {
+  QuantityVector axis;
+  Quantity along, across;
+  SourceLine line = 0;
+  std::string key;
+};
+
 struct FilmEntry {
   films::FilmSpec spec;  // tension and start filled in by evaluate()
   PlaceQuantity tension;
+  std::vector<SpheroidEntry> drop;  // none: a sphere
+  /// One number for all of the film, however it is turned.
+  bool has_one_tension() const { return !tension.of_place && drop.empty(); }
   std::vector<QuantityVector> vertices;  // of facets in the case
   std::vector<Triangle> facets;          // of vertices
   SourceLine line = 0;

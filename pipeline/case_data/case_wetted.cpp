@@ -18,12 +18,12 @@ constexpr int kPlacesOnRim = 16;
 constexpr double kSameEnergy = 1e-12;  // of films of one tension, or at 90 deg
 
 /// The films that end at the curves of a wetted face; without those whose
-/// tension depends on the place, of which check_bodies() tells.
+/// tension is not one number, of which check_bodies() tells.
 std::vector<const FilmEntry*> films_at(const Case& input, const CapEntry& cap) {
   const std::vector<std::string> curves = cap.spec.curves();
   std::vector<const FilmEntry*> result;
   for (const FilmEntry& film : input.films) {
-    if (!film.tension.of_place &&
+    if (film.has_one_tension() &&
         std::any_of(curves.begin(), curves.end(), [&](const auto& curve) {
           return std::find(film.spec.curves.begin(), film.spec.curves.end(),
                            curve) != film.spec.curves.end();

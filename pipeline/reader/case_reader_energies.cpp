@@ -127,7 +127,7 @@ case_data::Quantity tension_of_spine(CaseContext& context,
           entry.name == body &&
           std::find(entry.enclosed_by.begin(), entry.enclosed_by.end(),
                     film.spec.name) != entry.enclosed_by.end();
-      if (around && !film.tension.of_place) {
+      if (around && film.has_one_tension()) {
         return film.tension.quantity;
       }
     }

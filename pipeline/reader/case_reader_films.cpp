@@ -40,21 +40,21 @@ const std::vector<FilmRow>& film_kinds() {
   static const std::vector<FilmRow> kinds = {
       {"branch",
        films::FilmKind::Branch,
-       {{"curves"}, {"tension"}},
+       {{"curves"}, {"tension", "drop"}},
        "convex hull of any number of curves less their caps",
        2,
        std::size_t(-1),
        "a branch needs two or more"},
       {"loft",
        films::FilmKind::Loft,
-       {{"curves"}, {"tension"}},
+       {{"curves"}, {"tension", "drop"}},
        "band between two",
        2,
        2,
        "a loft needs two"},
       {"disk",
        films::FilmKind::Disk,
-       {{"curves"}, {"tension"}},
+       {{"curves"}, {"tension", "drop"}},
        "across the first, around the others, which lie within it as seen along "
        "it",
        1,
@@ -62,15 +62,15 @@ const std::vector<FilmRow>& film_kinds() {
        "a disk needs one or more"},
       {"spines",
        films::FilmKind::Spines,
-       {{}, {"curves", "tension"}},
+       {{}, {"curves", "tension", "drop"}},
        "around the spines of its body, one of which ends at each curve"},
       {"facets",
        films::FilmKind::Facets,
-       {{"vertices", "facets"}, {"curves", "within", "tension"}},
+       {{"vertices", "facets"}, {"curves", "within", "tension", "drop"}},
        "given here"},
       {"file",
        films::FilmKind::Facets,
-       {{"file"}, {"curves", "surface", "scale", "within", "tension"}},
+       {{"file"}, {"curves", "surface", "scale", "within", "tension", "drop"}},
        "facets of an STL, OBJ or Surface Evolver file"}};
   return kinds;
 }
@@ -180,6 +180,20 @@ double read_within(CaseContext& context, const CaseTable& table) {
   return within.value_or(0.0);
 }
 
+/// The shape of a film's free drops.
+std::vector<case_data::SpheroidEntry> read_drop(const CaseTable& table) {
+  std::vector<case_data::SpheroidEntry> result;
+  for (const CaseTable& part : table.tables("drop", "drop")) {
+    result.push_back(
+        {.axis = part.vector_or_zero("axis"),
+         .along = part.quantity_or_zero("along"),
+         .across = part.quantity_or_zero("across"),
+         .line = part.line(),
+         .key = fmt::format("{}[{}]", part.path(), result.size())});
+  }
+  return result;
+}
+
 case_data::FilmEntry read_film(CaseContext& context, const CaseTable& table,
                                const std::vector<std::string>& known,
                                case_data::Case& result) {
@@ -204,6 +218,7 @@ case_data::FilmEntry read_film(CaseContext& context, const CaseTable& table,
       case_data::PlaceQuantity{{.expression = Expression(1.0),
                                 .line = table.line(),
                                 .key = table.path() + ".tension"}});
+  film.drop = read_drop(table);
   return film;
 }
 
@@ -465,6 +480,10 @@ TableSpec film_table() {
         "on, none where it is closed"},
        {"tension", K::Field, D::Tension, false,
         "energy per area of the film, above 0; 1 when left out"},
+       {"drop", K::Spheroids, D::None, false,
+        "makes the tension depend on how the film is turned: spheroids whose "
+        "sum (Minkowski's) is the shape of its free drops; a sphere of radius "
+        "1 when left out"},
        {"vertices", K::Vectors, D::Length, false,
         "of facets: where its corners are at first"},
        {"facets", K::Facets, D::None, false,
@@ -480,6 +499,21 @@ TableSpec film_table() {
        {"within", K::Constant, D::Length, false,
         "of facets and file: how far rims may lie off their curves; a quarter "
         "of resolution.fea when left out"}}};
+}
+
+TableSpec drop_table() {
+  using D = Dimension;
+  using K = KeyType;
+  return {"drop",
+          false,
+          TableNeed::Optional,
+          "A spheroid: long ones round edges along their axis, flat ones make "
+          "faces across it",
+          {{"axis", K::Vector, D::None, true, "its direction, of any length"},
+           {"along", K::Quantity, D::None, true,
+            "half its length along the axis, above 0"},
+           {"across", K::Quantity, D::None, true,
+            "its radius about the axis, above 0"}}};
 }
 
 TableSpec solid_table() {

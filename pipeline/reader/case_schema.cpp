@@ -60,6 +60,7 @@ std::vector<TableSpec> make_tables() {
          "across it, away from what is drawn; any length but 0"}}},
       curve_table(),
       film_table(),
+      drop_table(),
       solid_table(),
       {"bodies",
        true,
@@ -203,9 +204,9 @@ std::vector<TableSpec> make_tables() {
 
 bool can_repeat(const std::string& table) {
   static const std::vector<std::string> tables = {
-      "curves",  "films",  "solids",    "bodies",  "fillets",
-      "walls",   "fields", "spines",    "support", "responses",
-      "exclude", "load",   "constraint"};
+      "curves",  "films",  "solids",     "bodies",  "fillets",
+      "walls",   "fields", "spines",     "support", "responses",
+      "exclude", "load",   "constraint", "drop"};
   return std::find(tables.begin(), tables.end(), table) != tables.end();
 }
 
@@ -262,7 +263,7 @@ std::string either_of(std::vector<std::string> names) {
 
 bool is_entry_table(const std::string& name) {
   return name == "support" || name == "load" || name == "exclude" ||
-         name == "plane" || name == "constraint";
+         name == "plane" || name == "constraint" || name == "drop";
 }
 
 bool is_later_table(const std::string& name) {

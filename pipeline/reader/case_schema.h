@@ -43,6 +43,7 @@ enum class KeyType {
   Supports,        // array of inline tables: table "support"
   Loads,           // array of inline tables: table "load"
   Zones,           // array of inline tables: table "exclude"
+  Spheroids,       // array of inline tables: table "drop"
   Planes,          // array of inline tables: table "plane"
   Constraints,     // array of inline tables: table "constraint"
   Members          // tables by name, or the name of a csv file
@@ -79,7 +80,8 @@ const std::vector<TableSpec>& case_tables();
 // the kinds' rows (pipeline/case_data/case_kinds.h).
 TableSpec curve_table();     // case_reader_curves.cpp
 TableSpec film_table();      // case_reader_films.cpp
-TableSpec solid_table();     // case_reader_films.cpp
+TableSpec drop_table();      // the same
+TableSpec solid_table();     // the same
 TableSpec wall_table();      // case_reader_walls.cpp
 TableSpec fillet_table();    // the same
 TableSpec shape_table();     // case_reader_shapes.cpp

@@ -73,6 +73,8 @@ const char* type_text(const KeySpec& key) {
       return "loads";
     case K::Zones:
       return "zones";
+    case K::Spheroids:
+      return "spheroids";
     case K::Planes:
       return "planes";
     case K::Constraints:
@@ -91,8 +93,8 @@ const char* dimension_text(const KeySpec& key) {
       key.type != K::Counts && key.type != K::Shape && key.type != K::Facets &&
       key.type != K::Flag && key.type != K::IntegerMap &&
       key.type != K::Supports && key.type != K::Loads && key.type != K::Zones &&
-      key.type != K::Planes && key.type != K::Constraints &&
-      key.type != K::Members;
+      key.type != K::Spheroids && key.type != K::Planes &&
+      key.type != K::Constraints && key.type != K::Members;
   if (key.type == K::ConstantMap) {
     return "the response's";
   }
@@ -118,7 +120,8 @@ std::string heading(const TableSpec& table) {
     return "Top of the file";
   }
   if (is_entry_table(name)) {
-    return fmt::format("Entries of `{}{}`", name, name == "exclude" ? "" : "s");
+    return fmt::format("Entries of `{}{}`", name,
+                       name == "exclude" || name == "drop" ? "" : "s");
   }
   return fmt::format("`[{}{}]`", name, table.named_entries ? ".NAME" : "");
 }
@@ -261,6 +264,8 @@ Json type_schema(const KeySpec& key) {
       return array(object_schema(case_table("load")), 1, 0);
     case K::Zones:
       return array(object_schema(case_table("exclude")), 1, 0);
+    case K::Spheroids:
+      return array(object_schema(case_table("drop")), 1, 0);
     case K::Planes:
       return array(object_schema(case_table("plane")), 1, 3);
     case K::Constraints:

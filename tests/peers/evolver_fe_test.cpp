@@ -16,6 +16,7 @@
 #include "evolve/datafile/fe_write.h"
 #include "evolve/frozen/film_model.h"
 #include "evolve/start/wetted_faces.h"
+#include "tests/support/film_shapes.h"
 #include "tests/support/film_sums.h"
 #include "tests/support/not_here.h"
 #include "tests/support/temp_folder.h"
@@ -283,6 +284,18 @@ TEST_F(EvolverFe, AgreesOnCurvesAndTensionFields) {
   expect_near(measured.area, sums::area(complex), "area");
   complex.bodies[0].pressure.reset();
   expect_same(complex);
+}
+
+// A tension that turns with its film is an integral of its normal.
+TEST_F(EvolverFe, AgreesOnATensionThatTurnsWithItsFilm) {
+  films::FilmComplex complex = shapes::drop(shapes::sphere(1.0, 2), 3.0);
+  complex.surfaces[0].tension = 1.7;
+  complex.surfaces[0].drop_shape = {{Vec3(1, 2, -0.5), 1.3, 0.2},
+                                    {Vec3(0, -1, 2), 0.4, 1.1}};
+  complex.bodies[0].volume.reset();
+  const Measured measured = measure(datafile::fe_text(complex));
+  expect_near(measured.energy, sums::energy(complex), "energy");
+  expect_near(measured.area, sums::area(complex), "area");
 }
 
 // A drop on a slanting plane: its wetted face is an integral along its rim.

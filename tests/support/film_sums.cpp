@@ -178,13 +178,23 @@ double quantity(const films::FilmComplex& complex, int index) {
   return sum;
 }
 
+double size(const films::DropShape& shape, const Vec3& area) {
+  double sum = shape.empty() ? area.norm() : 0.0;
+  for (const films::Spheroid& part : shape) {
+    const Vec3 axis = part.axis.normalized();
+    sum += std::hypot(part.along * axis.dot(area),
+                      part.across * area.cross(axis).norm());
+  }
+  return sum;
+}
+
 double energy(const films::FilmComplex& complex) {
   double sum = 0.0;
   for (std::size_t f = 0; f < complex.mesh.facets.size(); ++f) {
     const films::ComplexSurface& surface =
         complex.surfaces[complex.mesh.facet_label[f]];
     const Corners t = corners(complex, f);
-    sum += t.vector().norm() *
+    sum += size(surface.drop_shape, t.vector()) *
            (surface.tension_field ? mean(t.a, t.b, t.c,
                                          [&](const Vec3& p) {
                                            return at(*surface.tension_field, p);
