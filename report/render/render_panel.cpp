@@ -255,17 +255,20 @@ void Panel::finish(Canvas& canvas) const {
                 left_ + box.place.right * width_,
                 bottom_ + box.place.top * height_, box.colour);
   }
+  std::vector<PixelBox> written;
   for (const Text& text : texts_) {
-    canvas.write(text_image(text.text, text.style),
-                 static_cast<int>(std::lround(left_ + text.x * width_)),
-                 static_cast<int>(std::lround(bottom_ + text.y * height_)),
-                 text.style.colour);
+    const TextImage image = text_image(text.text, text.style);
+    const int x = static_cast<int>(std::lround(left_ + text.x * width_));
+    const int y = static_cast<int>(std::lround(bottom_ + text.y * height_));
+    canvas.write(image, x, y, text.style.colour);
+    written.push_back({x + image.box.left, y + image.box.bottom,
+                       x + image.box.right, y + image.box.top});
   }
   if (axes_text_ > 0) {
     draw_axes(canvas);
   }
   for (const Label& label : labels_) {
-    place_label(label, canvas);
+    written.push_back(place_label(label, written, canvas));
   }
 }
 
@@ -321,6 +324,16 @@ void Panel::draw_scale(Canvas& canvas, double left, double bottom) const {
       static_cast<int>(std::lround(bottom + 0.4 * axes_text_)), kAxisInk);
 }
 
+namespace {
+
+/// Pixels that two boxes share.
+int common(const PixelBox& a, const PixelBox& b) {
+  return std::max(0, std::min(a.right, b.right) - std::max(a.left, b.left)) *
+         std::max(0, std::min(a.top, b.top) - std::max(a.bottom, b.bottom));
+}
+
+}  // namespace
+
 /// Pixels of the box that belong to other panels.
 int Panel::beyond(const PixelBox& box) const {
   const double across = std::max(0.0, left_ - box.left) +
@@ -328,7 +341,10 @@ int Panel::beyond(const PixelBox& box) const {
   return static_cast<int>(across * (box.top - box.bottom));
 }
 
-void Panel::place_label(const Label& label, Canvas& canvas) const {
+PixelBox Panel::place_label(const Label& label,
+                            const std::vector<PixelBox>& written,
+                            Canvas& canvas) const {
+  constexpr int kUnreadable = 10;  // x pixels of text that it would cross
   const Eigen::Vector2d at = view_.project(label.at);
   const Vec3 away = view_.turned(label.away);
   Eigen::Vector2d along(away.x(), away.y());
@@ -356,24 +372,29 @@ void Panel::place_label(const Label& label, Canvas& canvas) const {
                                          .array()
                                          .round()
                                          .cast<int>();
-      const int room = style.size / 4;
+      const int room = style.size / 2;
       const PixelBox box = {corner.x() + text.box.left - room,
                             corner.y() + text.box.bottom - room,
                             corner.x() + text.box.right + room,
                             corner.y() + text.box.top + room};
-      const int taken = canvas.taken(box) + beyond(box);
+      int taken = canvas.taken(box) + beyond(box);
+      for (const PixelBox& other : written) {
+        taken += kUnreadable * common(box, other);
+      }
       if (least < 0 || taken < least) {
         least = taken;
         best = corner;
       }
     }
   }
+  const PixelBox box = {best.x() + text.box.left, best.y() + text.box.bottom,
+                        best.x() + text.box.right, best.y() + text.box.top};
   if (least > 0) {  // nowhere free: paper under the letters
-    canvas.fill(best.x() + text.box.left - 4, best.y() + text.box.bottom - 3,
-                best.x() + text.box.right + 4, best.y() + text.box.top + 3,
+    canvas.fill(box.left - 4, box.bottom - 3, box.right + 4, box.top + 3,
                 {1.0, 1.0, 1.0});
   }
   canvas.write(text, best.x(), best.y(), style.colour);
+  return box;
 }
 
 }  // namespace meniscus::render

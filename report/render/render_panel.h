@@ -85,7 +85,10 @@ class Panel {
   };
 
   int beyond(const PixelBox& box) const;
-  void place_label(const Label& label, Canvas& canvas) const;
+  /// `written`: where text stands already, which it is not to cross. Returns
+  /// where the label stands.
+  PixelBox place_label(const Label& label, const std::vector<PixelBox>& written,
+                       Canvas& canvas) const;
   void draw_axes(Canvas& canvas) const;
   void draw_scale(Canvas& canvas, double left, double bottom) const;
 
