@@ -147,10 +147,11 @@ class Page:
         return re.search(r"^# (.+)$", self.text, re.MULTILINE).group(1)
 
     def question(self):
-        """The README's first paragraph that is no sketch."""
+        """The README's first paragraph that is no sketch, its links as the
+        gallery has them."""
         for paragraph in self.text.split("\n\n")[1:]:
             if re.match(r"[A-Z]", paragraph):
-                return paragraph.strip()
+                return paragraph.strip().replace("](../", "](../../cases/")
         return ""
 
     def table(self):
