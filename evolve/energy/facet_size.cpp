@@ -11,8 +11,7 @@ namespace meniscus::energy {
 
 namespace {
 
-/// s = sqrt(q N.N + r (a.N)^2) with q = across^2, r = along^2 - across^2 and a
-/// of length 1.
+/// s = sqrt(along^2 h^2 + across^2 |N - h a|^2), h = a.N, a of length 1.
 class Support {
  public:
   Support(const Vec3& n, Numbers spheroid)
@@ -22,41 +21,46 @@ class Support {
         along_(spheroid[3]),
         across_(spheroid[4]) {
     axis_ /= length_;
-    q_ = across_ * across_;
-    r_ = along_ * along_ - q_;
     height_ = axis_.dot(n);
-    value_ = std::sqrt(q_ * n.squaredNorm() + r_ * height_ * height_);
+    aside_ = n - height_ * axis_;
+    value_ = std::hypot(along_ * height_, across_ * aside_.norm());
+    slope_ = (along_ * along_ * height_ * axis_ + across_ * across_ * aside_) /
+             value_;
   }
 
   double value() const { return value_; }
-  Vec3 slope() const { return (q_ * n_ + r_ * height_ * axis_) / value_; }
+  const Vec3& slope() const { return slope_; }
   Eigen::Matrix3d curve() const {
-    const Vec3 g = slope();
-    return (q_ * Eigen::Matrix3d::Identity() + r_ * axis_ * axis_.transpose() -
-            g * g.transpose()) /
+    const Eigen::Matrix3d along = axis_ * axis_.transpose();
+    return (across_ * across_ * (Eigen::Matrix3d::Identity() - along) +
+            along_ * along_ * along - slope_ * slope_.transpose()) /
            value_;
   }
 
   FacetSize rate(Numbers rates) const {
     const Vec3 moving(rates[0], rates[1], rates[2]);
     const Vec3 turn = (moving - axis_.dot(moving) * axis_) / length_;
-    const double q = 2.0 * across_ * rates[4];
-    const double r = 2.0 * along_ * rates[3] - q;
+    const double along = 2.0 * along_ * rates[3];  // of the squares
+    const double across = 2.0 * across_ * rates[4];
+    const double longer = along_ * along_ - across_ * across_;
     const double rise = turn.dot(n_);
     FacetSize result;
-    result.value = (0.5 * (q * n_.squaredNorm() + r * height_ * height_) +
-                    r_ * height_ * rise) /
-                   value_;
-    result.slope = (q * n_ + r * height_ * axis_ + r_ * rise * axis_ +
-                    r_ * height_ * turn - result.value * slope()) /
-                   value_;
+    result.value =
+        (0.5 * (along * height_ * height_ + across * aside_.squaredNorm()) +
+         longer * height_ * rise) /
+        value_;
+    result.slope =
+        (along * height_ * axis_ + across * aside_ +
+         longer * (rise * axis_ + height_ * turn) - result.value * slope_) /
+        value_;
     return result;
   }
 
  private:
   Vec3 n_, axis_;
   double length_, along_, across_;
-  double q_ = 0.0, r_ = 0.0, height_ = 0.0, value_ = 0.0;
+  double height_ = 0.0, value_ = 0.0;
+  Vec3 aside_, slope_;
 };
 
 /// Calls each(spheroid's numbers, index of their first).

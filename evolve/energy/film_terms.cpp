@@ -20,6 +20,7 @@ namespace {
 PlaceField own_tension() {
   PlaceField field(Expression::parse("tension", {"x", "y", "z", "tension"}));
   field.names = {"tension"};
+  field.numbers = VectorX::Ones(1);
   return field;
 }
 
@@ -372,8 +373,10 @@ std::vector<int> held_quantities(const films::FilmComplex& complex) {
 films::FilmTargets targets_of(const films::FilmComplex& complex) {
   films::FilmTargets targets;
   for (const films::ComplexSurface& surface : complex.surfaces) {
-    targets.tension.push_back(surface.liquid || surface.wetted ? surface.tension
-                                                               : 0.0);
+    targets.tension.push_back(surface.liquid || surface.wetted
+                                  ? surface.tension *
+                                        films::mean_support(surface.drop_shape)
+                                  : 0.0);
   }
   targets.bodies = complex.bodies;
   for (const int q : held_quantities(complex)) {

@@ -16,9 +16,10 @@ namespace {
 
 /// Turning a spheroid about its own axis changes nothing.
 Eigen::Matrix3d resistance_of(const films::DropShape& shape) {
+  constexpr double kRound = 1e-9;  // a sphere, but for rounding
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   for (const films::Spheroid& part : shape) {
-    if (part.along != part.across) {
+    if (std::abs(part.along - part.across) > kRound * part.across) {
       const Vec3 axis = part.axis.normalized();
       sum += Eigen::Matrix3d::Identity() - axis * axis.transpose();
     }

@@ -8,6 +8,8 @@
 /// geometric evolution equations in higher dimensions, Numer. Math. 109, 2008).
 #pragma once
 
+#include <cmath>
+#include <string>
 #include <vector>
 
 #include "core/types.h"
@@ -25,6 +27,19 @@ struct Spheroid {
 using DropShape = std::vector<Spheroid>;  // empty: g = 1
 
 constexpr int kSpheroidNumbers = 5;  // its axis, along, across
+
+/// What no drop can have, for messages; empty: nothing.
+inline std::string what_is_wrong(const DropShape& shape) {
+  for (const Spheroid& part : shape) {
+    const bool sized = part.along > 0.0 && std::isfinite(part.along) &&
+                       part.across > 0.0 && std::isfinite(part.across);
+    if (!sized || part.axis.isZero(0.0) || !part.axis.allFinite()) {
+      return "each spheroid of its drop needs an axis that is not 0 and half "
+             "axes above 0";
+    }
+  }
+  return "";
+}
 
 /// Of all directions the mean of g, for spheroids that are nearly spheres.
 inline double mean_support(const DropShape& shape) {

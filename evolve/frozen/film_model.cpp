@@ -87,6 +87,10 @@ void check_numbers(const films::FilmSystem& system) {
           fmt::format("the tension of film '{}' must be above 0, found {}",
                       film.name, film.tension));
     }
+    if (const std::string wrong = films::what_is_wrong(film.drop_shape);
+        !wrong.empty()) {
+      throw InvalidInput(fmt::format("film '{}': {}", film.name, wrong));
+    }
   }
   for (const films::CapSpec& cap : system.caps) {
     if (cap.wall) {
@@ -148,7 +152,7 @@ films::FilmTargets FilmModel::Impl::targets_of_system(
     result.numbers[complex.quantities.size() + s] =
         films::tension_numbers(*film);
     if (!field) {
-      result.tension[s] = film->tension;
+      result.tension[s] = film->tension * films::mean_support(film->drop_shape);
     }
   }
   check_fields(system);

@@ -66,9 +66,7 @@ class Flow {
       // A film whose tension is a function or 0 still keeps its facets apart.
       const bool film = complex.surfaces[label].liquid;
       facet_weight_.push_back(
-          film ? std::max(targets_.tension[label], 0.1 * most) *
-                     films::mean_support(complex.surfaces[label].drop_shape)
-               : 0.0);
+          film ? std::max(targets_.tension[label], 0.1 * most) : 0.0);
     }
     spined_ =
         std::any_of(complex.quantities.begin(), complex.quantities.end(),

@@ -127,6 +127,10 @@ class StartBuilder {
             fmt::format("film '{}': tension is {}, must be above 0", film.name,
                         film.tension));
       }
+      if (const std::string wrong = films::what_is_wrong(film.drop_shape);
+          !wrong.empty()) {
+        throw InvalidInput(fmt::format("film '{}': {}", film.name, wrong));
+      }
     }
     for (const films::CapSpec& cap : system_.caps) {
       add(cap.name);

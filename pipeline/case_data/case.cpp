@@ -130,8 +130,13 @@ void add_field(const Case& input, const FieldEntry& field,
   for (const films::FilmSpec& film : system.films) {
     const bool acts = std::find(field.films.begin(), field.films.end(),
                                 film.name) != field.films.end();
-    if (checked && acts && !film.tension_field &&
-        spec.strength >= film.tension) {
+    if (checked && acts && !film.drop_shape.empty()) {
+      values.problems().push_back(fmt::format(
+          "{}: {} acts on the area of film '{}', whose tension depends on how "
+          "it is turned (`drop`); give the pole a body in place of films",
+          place(input, field.line), field.strength.key, film.name));
+    } else if (checked && acts && !film.tension_field &&
+               spec.strength >= film.tension) {
       values.problems().push_back(fmt::format(
           "{}: {} is {:g}, and film '{}' has a tension of {:g}; it would "
           "crumple on the pole: expected less, a larger core reaches as far",
@@ -255,7 +260,7 @@ void refine_curves(const Case& input, films::FilmSystem& system) {
   }
 }
 
-films::Spheroid spheroid_of(const SpheroidEntry& part,
+films::Spheroid spheroid_of(const Case& input, const SpheroidEntry& part,
                             const CaseValues& values) {
   const std::size_t before = values.problems().size();
   const films::Spheroid result{values.at(part.axis),
@@ -263,9 +268,9 @@ films::Spheroid spheroid_of(const SpheroidEntry& part,
                                values.positive(part.across)};
   if (!values.are_rates() && values.problems().size() == before &&
       result.axis.isZero(0.0)) {
-    values.problems().push_back(
-        fmt::format("{}: axis is (0, 0, 0){}; expected a direction", part.key,
-                    values.where(part.axis)));
+    values.problems().push_back(fmt::format(
+        "{}: {}.axis is (0, 0, 0){}; expected a direction",
+        place(input, part.line), part.key, values.where(part.axis)));
   }
   return result;
 }
@@ -282,7 +287,7 @@ films::FilmSystem films_of(const Case& input, const CaseValues& values) {
       spec.tension = values.positive(film.tension.quantity);
     }
     for (const SpheroidEntry& part : film.drop) {
-      spec.drop_shape.push_back(spheroid_of(part, values));
+      spec.drop_shape.push_back(spheroid_of(input, part, values));
     }
     if (!film.facets.empty() && !values.are_rates()) {
       spec.start = start_of(film, values);

@@ -274,6 +274,47 @@ void check_response(const Case& input, const ResponseEntry& response,
   }
 }
 
+bool is_same(const films::Spheroid& a, const films::Spheroid& b) {
+  constexpr double kSame = 1e-9;
+  return a.axis.normalized().cross(b.axis.normalized()).norm() < kSame &&
+         std::abs(a.along - b.along) < kSame * a.along &&
+         std::abs(a.across - b.across) < kSame * a.across;
+}
+
+bool is_mirrored(const films::DropShape& shape, const Vec3& normal) {
+  const Vec3 n = normal.normalized();
+  films::DropShape images = shape;
+  for (const films::Spheroid& part : shape) {
+    const films::Spheroid image{part.axis - 2.0 * n.dot(part.axis) * n,
+                                part.along, part.across};
+    const auto at = std::find_if(
+        images.begin(), images.end(),
+        [&](const films::Spheroid& other) { return is_same(image, other); });
+    if (at == images.end()) {
+      return false;
+    }
+    images.erase(at);
+  }
+  return true;
+}
+
+/// A film's image has the same tension.
+void check_drops(const Case& input, const films::FilmSystem& system,
+                 const CaseValues& values) {
+  for (std::size_t k = 0; k < input.films.size(); ++k) {
+    for (const SymmetryPlane& plane : input.symmetry) {
+      if (!is_mirrored(system.films[k].drop_shape, plane.normal)) {
+        values.problems().push_back(fmt::format(
+            "{}: the `drop` of film '{}' is not symmetric about the plane "
+            "across ({:g}, {:g}, {:g}): each spheroid needs its image there "
+            "too, or an axis in the plane or across it",
+            place(input, input.films[k].line), system.films[k].name,
+            plane.normal.x(), plane.normal.y(), plane.normal.z()));
+      }
+    }
+  }
+}
+
 }  // namespace
 
 void check_symmetry(const Case& input, const EvaluatedCase& inputs,
@@ -297,6 +338,7 @@ void check_symmetry(const Case& input, const EvaluatedCase& inputs,
     return;  // what lies where is no news then
   }
   check_cut_faces(input, system, values);
+  check_drops(input, system, values);
   const double size = size_of(system.curves);
   for (const LoadCaseEntry& load_case : input.load_cases) {
     for (const LoadEntry& load : load_case.loads) {
