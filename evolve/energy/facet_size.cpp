@@ -73,7 +73,7 @@ void over_spheroids(Numbers spheroids, const Each& each) {
 
 }  // namespace
 
-FacetSize facet_size(const Vec3& n, Numbers spheroids) {
+FacetSize facet_size(const Vec3& n, Numbers spheroids, bool curved) {
   FacetSize sum;
   const double size = n.norm();
   if (!(size > 0.0)) {
@@ -82,16 +82,20 @@ FacetSize facet_size(const Vec3& n, Numbers spheroids) {
   if (spheroids.empty()) {
     sum.value = size;
     sum.slope = n / size;
-    sum.curve =
-        (Eigen::Matrix3d::Identity() - sum.slope * sum.slope.transpose()) /
-        size;
+    if (curved) {
+      sum.curve =
+          (Eigen::Matrix3d::Identity() - sum.slope * sum.slope.transpose()) /
+          size;
+    }
     return sum;
   }
   over_spheroids(spheroids, [&](Numbers spheroid, std::size_t /*first*/) {
     const Support part(n, spheroid);
     sum.value += part.value();
     sum.slope += part.slope();
-    sum.curve += part.curve();
+    if (curved) {
+      sum.curve += part.curve();
+    }
   });
   return sum;
 }

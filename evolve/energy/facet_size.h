@@ -15,8 +15,8 @@ struct FacetSize {
 };
 
 /// `spheroids`: as films::tension_numbers has them; none: |N|. All zero for a
-/// facet without area.
-FacetSize facet_size(const Vec3& n, Numbers spheroids);
+/// facet without area. The curve stays 0 where it is not asked for.
+FacetSize facet_size(const Vec3& n, Numbers spheroids, bool curved = true);
 
 /// How fast value and slope change as the spheroids do.
 FacetSize facet_size_rate(const Vec3& n, Numbers spheroids, Numbers rates);

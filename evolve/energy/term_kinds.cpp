@@ -45,8 +45,10 @@ struct GrowingFacet {
   FacetSize size;
   FilmTerm::Vector9 grow = FilmTerm::Vector9::Zero();
 
-  GrowingFacet(const FilmTerm::Corners& c, Numbers spheroids)
-      : n(c), size(facet_size(n.normal, spheroids)) {
+  GrowingFacet(const FilmTerm::Corners& c, Numbers spheroids,
+               JetOrder order = JetOrder::Gradient)
+      : n(c),
+        size(facet_size(n.normal, spheroids, order == JetOrder::Hessian)) {
     grow = by_corners(size.slope);
   }
 
@@ -97,7 +99,7 @@ class ScalarTerm : public FilmTerm {
 
   FacetJet jet(const Element& element, const Corners& c, JetOrder order,
                Numbers numbers) const override {
-    const GrowingFacet n(c, spheroids(numbers));
+    const GrowingFacet n(c, spheroids(numbers), order);
     FacetJet sum;
     if (!(n.size.value > 0.0)) {
       return sum;

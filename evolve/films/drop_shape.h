@@ -67,7 +67,8 @@ VectorX tension_numbers(const Film& film) {
                              static_cast<Eigen::Index>(film.drop_shape.size()));
   for (std::size_t k = 0; k < film.drop_shape.size(); ++k) {
     const Spheroid& part = film.drop_shape[k];
-    own.segment<5>(first + kSpheroidNumbers * static_cast<Eigen::Index>(k))
+    own.segment<kSpheroidNumbers>(first + kSpheroidNumbers *
+                                              static_cast<Eigen::Index>(k))
         << part.axis,
         part.along, part.across;
   }

@@ -676,7 +676,9 @@ films::FilmComplex FilmModel::Impl::at_design(
   at.curves = curves_of_system(system);
   const films::FilmTargets goal = targets_of_system(system);
   for (std::size_t s = 0; s < at.surfaces.size(); ++s) {
-    at.surfaces[s].tension = goal.tension[s];
+    if (at.surfaces[s].drop_shape.empty()) {  // else among its numbers
+      at.surfaces[s].tension = goal.tension[s];
+    }
     films::set_tension_numbers(goal.numbers[at.quantities.size() + s],
                                at.surfaces[s]);
   }
