@@ -8,8 +8,8 @@
 
 #include "cad/solid/film_cells.h"
 #include "cad/solid/film_tubes.h"
-#include "cad/solid/harmonic.h"
 #include "core/error.h"
+#include "core/geometry/harmonic.h"
 
 namespace meniscus::solid {
 
@@ -32,8 +32,10 @@ std::vector<int> turned(std::vector<int> loop, int start, bool backwards) {
 void set_values(SplitFilm& split, int cell, const Tube& tube, bool free_top) {
   const FilmMesh& mesh = split.film.mesh;
   const std::vector<int> facets = facets_of(split, cell);
-  TubeCut cut = cut_tube(mesh, facets, tube.bottom, tube.top);
-  HarmonicProblem problem{mesh, facets, {}, {}, std::move(cut.offsets)};
+  TubeCut cut =
+      cut_tube(mesh.facets, mesh.points.size(), facets, tube.bottom, tube.top);
+  HarmonicProblem problem{mesh.points, mesh.facets, facets,
+                          {},          {},          std::move(cut.offsets)};
   problem.fixed.assign(mesh.points.size(), 0);
   problem.values =
       Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(mesh.points.size()), 1);

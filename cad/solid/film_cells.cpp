@@ -8,8 +8,8 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
-#include "cad/solid/harmonic.h"
 #include "core/error.h"
+#include "core/geometry/harmonic.h"
 #include "core/math/dense.h"
 
 namespace meniscus::solid {
@@ -148,7 +148,7 @@ Eigen::MatrixXd disk_measures(const SplitFilm& split) {
   const std::vector<int> loop = boundary_loops(mesh.facets).at(0);
   const std::vector<double> shares = shares_of(mesh, loop);
   const std::vector<double> seams = seam_shares(split, loop, shares);
-  HarmonicProblem problem{mesh, {}, {}, {}};
+  HarmonicProblem problem{mesh.points, mesh.facets, {}, {}, {}};
   for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
     problem.facets.push_back(static_cast<int>(f));
   }

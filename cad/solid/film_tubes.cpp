@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "cad/solid/harmonic.h"
 #include "core/error.h"
+#include "core/geometry/harmonic.h"
 
 namespace meniscus::solid {
 
@@ -57,7 +57,8 @@ std::vector<std::vector<int>> loops_of_rims(const SplitFilm& split) {
 /// A column per rim: 1 on it, 0 on the others, harmonic between.
 Eigen::MatrixXd harmonic_measures(const SplitFilm& split) {
   const FilmMesh& mesh = split.film.mesh;
-  HarmonicProblem problem{mesh, facets_of(split, 0), {}, {}};
+  HarmonicProblem problem{
+      mesh.points, mesh.facets, facets_of(split, 0), {}, {}};
   problem.fixed.assign(mesh.points.size(), 0);
   problem.values =
       Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(mesh.points.size()),

@@ -6,8 +6,8 @@
 #include <Eigen/Geometry>
 #include <Eigen/SparseCholesky>
 
-#include "cad/solid/harmonic.h"
 #include "core/error.h"
+#include "core/geometry/harmonic.h"
 #include "core/geometry/plane_points.h"
 
 namespace meniscus::solid {
@@ -35,7 +35,7 @@ std::vector<double> samples_of(const std::vector<double>& knots, int per_span) {
 /// (a, b) of every vertex of the patch.
 Eigen::MatrixXd parameters(const FilmMesh& mesh, const FilmPatch& patch,
                            const PatchSides& sides) {
-  HarmonicProblem problem{mesh, patch.facets, {}, {}};
+  HarmonicProblem problem{mesh.points, mesh.facets, patch.facets, {}, {}};
   problem.fixed.assign(mesh.points.size(), 0);
   problem.values =
       Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(mesh.points.size()), 2);

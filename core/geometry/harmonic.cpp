@@ -1,15 +1,17 @@
-#include "cad/solid/harmonic.h"
+#include "core/geometry/harmonic.h"
 
 #include <algorithm>
 #include <deque>
+#include <map>
 #include <set>
 
 #include <Eigen/Geometry>
 
 #include "core/error.h"
+#include "core/geometry/edge_key.h"
 #include "core/math/linear_solve.h"
 
-namespace meniscus::solid {
+namespace meniscus {
 
 namespace {
 
@@ -17,22 +19,39 @@ constexpr double kLeastWeight = 1e-3;
 constexpr double kMostWeight = 1e3;
 
 /// Half the cotangent of the facet's angle opposite to its edge k.
-double edge_weight(const FilmMesh& mesh, const Triangle& t, int k) {
-  const Vec3& c = mesh.points[t[(k + 2) % 3]];
-  const Vec3 a = mesh.points[t[k]] - c;
-  const Vec3 b = mesh.points[t[(k + 1) % 3]] - c;
+double half_cotangent(const Points& points, const Triangle& t, int k) {
+  const Vec3& c = points[t[(k + 2) % 3]];
+  const Vec3 a = points[t[k]] - c;
+  const Vec3 b = points[t[(k + 1) % 3]] - c;
   const double area2 = a.cross(b).norm();
   const double cotangent = area2 > 0.0 ? a.dot(b) / area2 : kMostWeight;
-  return std::clamp(0.5 * cotangent, kLeastWeight, kMostWeight);
+  return std::clamp(0.5 * cotangent, -kMostWeight, kMostWeight);
+}
+
+/// Cotangent weights of the facets' edges, held above 0 as sums: those of
+/// Delaunay meshes are exact.
+std::map<Edge, double> edge_weights(const HarmonicProblem& problem) {
+  std::map<Edge, double> result;
+  for (const int f : problem.facets) {
+    const Triangle& t = problem.mesh[f];
+    for (int k = 0; k < 3; ++k) {
+      result[edge_key(t[k], t[(k + 1) % 3])] +=
+          half_cotangent(problem.points, t, k);
+    }
+  }
+  for (auto& [edge, weight] : result) {
+    weight = std::clamp(weight, kLeastWeight, kMostWeight);
+  }
+  return result;
 }
 
 /// Numbers of the free vertices, -1 for others. Throws where none is fixed.
 std::vector<int> number_free(const HarmonicProblem& problem, int& count) {
-  std::vector<int> unknown(problem.mesh.points.size(), -1);
+  std::vector<int> unknown(problem.points.size(), -1);
   count = 0;
   int fixed = 0;
   for (const int f : problem.facets) {
-    for (const int v : problem.mesh.facets[f]) {
+    for (const int v : problem.mesh[f]) {
       if (problem.fixed[v] != 0) {
         ++fixed;
       } else if (unknown[v] < 0) {
@@ -49,7 +68,6 @@ std::vector<int> number_free(const HarmonicProblem& problem, int& count) {
 }  // namespace
 
 Eigen::MatrixXd harmonic(const HarmonicProblem& problem) {
-  const FilmMesh& mesh = problem.mesh;
   int count = 0;
   const std::vector<int> unknown = number_free(problem, count);
   const Eigen::Index columns = problem.values.cols();
@@ -70,20 +88,25 @@ Eigen::MatrixXd harmonic(const HarmonicProblem& problem) {
       entries.emplace_back(row, unknown[w], -weight);
     }
   };
-  // Cotangent weights (Pinkall, Polthier 1993), held above 0 so that a map
-  // onto a convex outline is one to one (Tutte 1963). Offsets make a function
-  // that jumps across a cut.
+  // Positive weights, so that a map onto a convex outline is one to one (Tutte
+  // 1963). Offsets make a function that jumps across a cut; an edge's jump is
+  // the same in both of its facets.
+  std::map<Edge, double> weights = edge_weights(problem);
   for (std::size_t i = 0; i < problem.facets.size(); ++i) {
-    const Triangle& t = mesh.facets[problem.facets[i]];
+    const Triangle& t = problem.mesh[problem.facets[i]];
     for (int k = 0; k < 3; ++k) {
       const int next = (k + 1) % 3;
-      const double weight = edge_weight(mesh, t, k);
+      const auto weight = weights.find(edge_key(t[k], t[next]));
+      if (weight == weights.end()) {
+        continue;  // done in another facet
+      }
       const double jump =
           problem.offsets.empty()
               ? 0.0
               : problem.offsets[i][k] - problem.offsets[i][next];
-      half(t[k], t[next], weight, jump);
-      half(t[next], t[k], weight, -jump);
+      half(t[k], t[next], weight->second, jump);
+      half(t[next], t[k], weight->second, -jump);
+      weights.erase(weight);
     }
   }
   Eigen::MatrixXd result = problem.values;
@@ -95,7 +118,7 @@ Eigen::MatrixXd harmonic(const HarmonicProblem& problem) {
   matrix.setFromTriplets(entries.begin(), entries.end());
   SymmetricFactor factor(matrix, FactorKind::Cholesky);
   if (!factor.factorize(matrix)) {
-    throw MeshError("a film is in pieces: its map cannot be found");
+    throw MeshError("a film is in pieces: it has no harmonic functions");
   }
   const Eigen::MatrixXd solution = factor.solve(right);
   for (std::size_t v = 0; v < unknown.size(); ++v) {
@@ -110,20 +133,21 @@ namespace {
 
 /// The shortest way in edges from one loop to the other, over vertices of
 /// neither but its ends.
-std::vector<int> path_between(const FilmMesh& mesh,
+std::vector<int> path_between(const std::vector<Triangle>& mesh,
+                              std::size_t points,
                               const std::vector<int>& facets,
                               const std::vector<int>& first,
                               const std::vector<int>& second) {
-  std::vector<std::vector<int>> near(mesh.points.size());
+  std::vector<std::vector<int>> near(points);
   for (const int f : facets) {
-    const Triangle& t = mesh.facets[f];
+    const Triangle& t = mesh[f];
     for (int k = 0; k < 3; ++k) {
       near[t[k]].push_back(t[(k + 1) % 3]);
       near[t[k]].push_back(t[(k + 2) % 3]);
     }
   }
   const std::set<int> goal(second.begin(), second.end());
-  std::vector<int> before(mesh.points.size(), -1);
+  std::vector<int> before(points, -1);
   std::deque<int> queue(first.begin(), first.end());
   for (const int v : first) {
     before[v] = v;
@@ -152,12 +176,12 @@ std::vector<int> path_between(const FilmMesh& mesh,
 
 }  // namespace
 
-TubeCut cut_tube(const FilmMesh& mesh, const std::vector<int>& facets,
-                 const std::vector<int>& first,
+TubeCut cut_tube(const std::vector<Triangle>& mesh, std::size_t points,
+                 const std::vector<int>& facets, const std::vector<int>& first,
                  const std::vector<int>& second) {
   TubeCut cut;
-  cut.path = path_between(mesh, facets, first, second);
-  std::vector<int> place(mesh.points.size(), -1);
+  cut.path = path_between(mesh, points, facets, first, second);
+  std::vector<int> place(points, -1);
   for (std::size_t i = 0; i < cut.path.size(); ++i) {
     place[cut.path[i]] = static_cast<int>(i);
   }
@@ -169,13 +193,13 @@ TubeCut cut_tube(const FilmMesh& mesh, const std::vector<int>& facets,
   cut.offsets.assign(facets.size(), {0, 0, 0});
   std::map<Edge, int> owner;  // directed edge: place in `facets`
   for (std::size_t i = 0; i < facets.size(); ++i) {
-    const Triangle& t = mesh.facets[facets[i]];
+    const Triangle& t = mesh[facets[i]];
     for (int k = 0; k < 3; ++k) {
       owner[{t[k], t[(k + 1) % 3]}] = static_cast<int>(i);
     }
   }
   const auto corner_of = [&](int i, int v) {
-    const Triangle& t = mesh.facets[facets[i]];
+    const Triangle& t = mesh[facets[i]];
     return t[0] == v ? 0 : t[1] == v ? 1 : 2;
   };
   // Left of the path, turning about v from the facet on path edge (a, b).
@@ -186,7 +210,7 @@ TubeCut cut_tube(const FilmMesh& mesh, const std::vector<int>& facets,
       const int i = at->second;
       const int k = corner_of(i, v);
       cut.offsets[i][k] = 1;
-      const Triangle& t = mesh.facets[facets[i]];
+      const Triangle& t = mesh[facets[i]];
       const int next = t[(k + 1) % 3];
       const int last = t[(k + 2) % 3];
       if (v == a) {  // came in over v -> next; leave over last -> v
@@ -209,4 +233,4 @@ TubeCut cut_tube(const FilmMesh& mesh, const std::vector<int>& facets,
   return cut;
 }
 
-}  // namespace meniscus::solid
+}  // namespace meniscus

@@ -1,0 +1,41 @@
+/// Harmonic functions on triangle meshes, by cotangent weights (Pinkall,
+/// Polthier 1993) held above zero, so that maps onto convex outlines are one to
+/// one (Tutte 1963; Floater 2003).
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/geometry/surface_mesh.h"
+
+namespace meniscus {
+
+struct HarmonicProblem {
+  const Points& points;
+  const std::vector<Triangle>& mesh;
+  std::vector<int> facets;  // of the mesh, that the functions live on
+  std::vector<char> fixed;  // one per point
+  Eigen::MatrixXd values;   // a row per vertex: the fixed ones'
+  // What a corner's value exceeds its vertex's by, per facet of `facets`;
+  // empty: nothing. For functions that gain 1 around a tube.
+  std::vector<std::array<int, 3>> offsets = {};
+};
+
+/// The values at all points of the facets; others keep theirs. Throws
+/// MeshError where nothing is fixed, and for a part without a fixed point.
+Eigen::MatrixXd harmonic(const HarmonicProblem& problem);
+
+/// Corner offsets of the tube between two loops, and the path of vertices from
+/// the first loop to the second across which functions jump: they gain 1 along
+/// the first loop's direction.
+struct TubeCut {
+  std::vector<int> path;
+  std::vector<std::array<int, 3>> offsets;
+};
+/// `points`: how many the mesh has. Throws MeshError where the facets do not
+/// connect the loops.
+TubeCut cut_tube(const std::vector<Triangle>& mesh, std::size_t points,
+                 const std::vector<int>& facets, const std::vector<int>& first,
+                 const std::vector<int>& second);
+
+}  // namespace meniscus
