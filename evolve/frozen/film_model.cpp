@@ -661,6 +661,14 @@ std::vector<int> FilmModel::rim(const std::string& curve) const {
   return result;
 }
 
+std::vector<double> FilmModel::rim_parameters(const std::string& curve) const {
+  std::vector<double> result;
+  for (const int v : rim(curve)) {
+    result.push_back(impl_->complex.vertices[v].t);
+  }
+  return result;
+}
+
 films::FilmComplex FilmModel::Impl::at_design(
     films::FilmComplex at, const settle::FilmState& state,
     const films::FilmSystem& system) const {

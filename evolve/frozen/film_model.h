@@ -169,6 +169,8 @@ class FilmModel {
   /// Vertices of the fine mesh on a curve; none for a curve that the model has
   /// not.
   std::vector<int> rim(const std::string& curve) const;
+  /// Their parameters t on it, in the same order.
+  std::vector<double> rim_parameters(const std::string& curve) const;
 
   FilmModel(FilmModel&&) noexcept;
   FilmModel& operator=(FilmModel&&) noexcept;

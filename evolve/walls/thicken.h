@@ -22,6 +22,7 @@ enum class WallSide {
 struct WallRim {
   std::string name;
   std::vector<int> vertices;  // of the film given
+  std::vector<double> t;      // of the curve, one per vertex; may be left out
 };
 
 struct ThickenOptions {

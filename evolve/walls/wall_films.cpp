@@ -5,6 +5,8 @@
 
 #include <Eigen/Geometry>
 
+#include "evolve/walls/rim_shape.h"
+
 namespace meniscus::walls {
 
 namespace {
@@ -49,6 +51,25 @@ Vec3 middle_of_rim(const films::FilmSystem& system, const std::string& film,
   return sum / count;
 }
 
+/// Per wall that at the first of its points.
+std::vector<double> usual_thicknesses(const WallFilms& films,
+                                      const std::vector<WallSpec>& walls) {
+  std::vector<int> first(walls.size(), -1);
+  for (std::size_t f = 0; f < films.mesh.facets.size(); ++f) {
+    int& point = first[films.wall[films.mesh.facet_label[f]]];
+    const Triangle& t = films.mesh.facets[f];
+    const int least = *std::min_element(t.begin(), t.end());
+    point = point < 0 ? least : std::min(point, least);
+  }
+  std::vector<double> result;
+  for (std::size_t w = 0; w < walls.size(); ++w) {
+    const PlaceField& thickness = walls[w].thickness;
+    const Vec3& at = films.mesh.points[std::max(first[w], 0)];
+    result.push_back(value_at(thickness, thickness.own(), at));
+  }
+  return result;
+}
+
 }  // namespace
 
 WallFilms wall_films(const frozen::FilmModel& model,
@@ -66,9 +87,6 @@ WallFilms wall_films(const frozen::FilmModel& model,
       films.wall.push_back(static_cast<int>(w));
     }
     films.region.push_back(walls[w].region);
-    const Vec3& p = points.front();
-    const PlaceField& thickness = walls[w].thickness;
-    films.asked.push_back(value_at(thickness, thickness.own(), p));
   }
   for (std::size_t f = 0; f < all.facets.size(); ++f) {
     const int label = mesh.label_of(all.labels[all.facet_label[f]]);
@@ -82,8 +100,11 @@ WallFilms wall_films(const frozen::FilmModel& model,
                  middle_of_rim(system, mesh.labels[label], model, points));
   }
   for (const curves::Curve& curve : system.curves) {
-    films.rims.push_back({curve.name, model.rim(curve.name)});
+    films.rims.push_back(
+        {curve.name, model.rim(curve.name), model.rim_parameters(curve.name)});
   }
+  films.asked =
+      usual_thicknesses(films, on_films(walls, mesh, films.wall, films.rims));
   return films;
 }
 

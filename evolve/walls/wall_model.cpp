@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "evolve/walls/rim_shape.h"
 #include "evolve/walls/wall_films.h"
 #include "evolve/walls/wall_offset.h"
 
@@ -15,6 +16,18 @@ namespace meniscus::walls {
 namespace {
 
 constexpr double kSpannedByEdges = 1e-4;  // of the largest eigenvalue
+
+std::vector<WallSpec> on_finest(const std::vector<WallSpec>& walls,
+                                const WallTopology& topology,
+                                const WallFilms& films) {
+  SurfaceMesh finest;
+  finest.points = films.mesh.points;
+  for (const WallFacet& facet : topology.facets) {
+    finest.facets.push_back(facet.film);
+    finest.facet_label.push_back(facet.label);
+  }
+  return on_films(walls, finest, films.wall, films.rims);
+}
 
 }  // namespace
 
@@ -28,9 +41,10 @@ WallModel WallModel::freeze(const frozen::FilmModel& film,
 
 WallModel::WallModel(const WallFilms& films, std::vector<WallSpec> walls,
                      SafePlaces places)
-    : specs_(std::move(walls)),
+    : given_(std::move(walls)),
       reference_film_(films.mesh.points),
       topology_(wall_topology(films)),
+      specs_(on_finest(given_, topology_, films)),
       reference_(wall_reference(topology_, films, specs_, places)) {
   std::vector<std::set<int>> vertices(specs_.size());
   for (std::size_t p = 0; p < reference_.moves.size(); ++p) {
@@ -138,10 +152,10 @@ Points WallModel::unit_normals(const Points& film) const {
 std::vector<VectorX> WallModel::numbers(
     const std::vector<WallSpec>& walls) const {
   std::vector<VectorX> result;
-  for (std::size_t w = 0; w < specs_.size(); ++w) {
-    if (walls.size() != specs_.size() ||
-        !is_same_but_numbers(walls[w].thickness, specs_[w].thickness) ||
-        walls[w].name != specs_[w].name) {
+  for (std::size_t w = 0; w < given_.size(); ++w) {
+    if (walls.size() != given_.size() ||
+        !is_same_but_numbers(walls[w].thickness, given_[w].thickness) ||
+        walls[w].name != given_[w].name) {
       throw InvalidInput("the design's walls are not those of its model");
     }
     result.push_back(walls[w].thickness.numbers);
@@ -311,7 +325,7 @@ void WallModel::through_normals(const Points& film, const Points& normals,
 
 /// One closed wall per region, measured and checked.
 void WallModel::report() {
-  const SurfaceMesh all = fine(reference_film_, numbers(specs_));
+  const SurfaceMesh all = fine(reference_film_, numbers(given_));
   std::vector<char> in_front(topology_.points.size(), 0);
   for (const WallFacet& facet : topology_.facets) {
     for (const int p : facet.front) {

@@ -107,10 +107,11 @@ class WallModel {
                    const std::vector<VectorX>& numbers) const;
   Points unit_normals(const Points& film) const;
 
-  std::vector<WallSpec> specs_;
+  std::vector<WallSpec> given_;
   Points reference_film_;
   std::vector<std::vector<int>> vertices_of_;  // of the film, per wall
   WallTopology topology_;
+  std::vector<WallSpec> specs_;  // given_, on the film
   WallReference reference_;
   std::vector<Follow> follow_;  // per wall point
   SurfaceNodes nodes_;

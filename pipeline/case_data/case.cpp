@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "evolve/energy/fields.h"
+#include "evolve/walls/rim_shape.h"
 #include "pipeline/case_data/case_curves.h"
 #include "pipeline/case_data/case_loads.h"
 #include "pipeline/case_data/case_responses.h"
@@ -342,6 +343,32 @@ std::vector<std::string> curves_under(const Case& input,
   return curves;
 }
 
+/// Whether the thickness has shapes between rims, whose values are the walls'
+/// own; tells of those whose curves the wall's films do not end at.
+bool check_rim_shapes(const Case& input, const walls::WallSpec& wall,
+                      const PlaceQuantity& from, const CaseValues& values) {
+  const std::vector<std::string> ends = curves_under(input, wall.films);
+  bool found = false;
+  for (const auto& shape : wall.thickness.shapes) {
+    const walls::RimSplines* splines =
+        shape != nullptr ? walls::rim_splines_of(*shape) : nullptr;
+    if (splines == nullptr) {
+      continue;
+    }
+    found = true;
+    for (const std::string& curve : {splines->first, splines->second}) {
+      if (std::find(ends.begin(), ends.end(), curve) == ends.end()) {
+        values.problems().push_back(fmt::format(
+            "{}: {} has a shape between curves '{}' and '{}'; no film of "
+            "walls.{} ends at '{}' (they end at {})",
+            place(input, from.quantity.line), from.quantity.key, splines->first,
+            splines->second, wall.name, curve, fmt::join(ends, ", ")));
+      }
+    }
+  }
+  return found;
+}
+
 /// Tells of expressions of place that cannot hold on their films.
 void check_places(const Case& input, const EvaluatedCase& inputs,
                   const CaseValues& values) {
@@ -354,8 +381,11 @@ void check_places(const Case& input, const EvaluatedCase& inputs,
   }
   for (std::size_t k = 0; k < input.walls.size(); ++k) {
     const walls::WallSpec& wall = inputs.walls[k];
-    check_on_curves(input, inputs.film_system, curves_under(input, wall.films),
-                    input.walls[k].thickness, wall.thickness, values);
+    if (!check_rim_shapes(input, wall, input.walls[k].thickness, values)) {
+      check_on_curves(input, inputs.film_system,
+                      curves_under(input, wall.films), input.walls[k].thickness,
+                      wall.thickness, values);
+    }
   }
 }
 

@@ -280,6 +280,7 @@ void read_fields(CaseContext& context, const toml::table& root,
     read_field_targets(context, table, result, field);
     field.pressure =
         table.place_quantity("pressure").value_or(case_data::PlaceQuantity{});
+    require_space(context, result, field.pressure);
     result.fields.push_back(std::move(field));
   }
 }

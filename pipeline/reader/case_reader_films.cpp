@@ -218,6 +218,7 @@ case_data::FilmEntry read_film(CaseContext& context, const CaseTable& table,
       case_data::PlaceQuantity{{.expression = Expression(1.0),
                                 .line = table.line(),
                                 .key = table.path() + ".tension"}});
+  require_space(context, result, film.tension);
   film.drop = read_drop(table);
   return film;
 }

@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/math/place_shape.h"
+#include "evolve/walls/rim_shape.h"
 #include "pipeline/case_data/case_kinds.h"
 #include "pipeline/reader/case_reader_tables.h"
 
@@ -15,7 +16,7 @@ namespace meniscus::reader {
 
 namespace {
 
-enum class ShapeKind { Box, Axis, Radial };
+enum class ShapeKind { Box, Axis, Radial, Rims };
 
 struct ShapeRow {
   const char* name;
@@ -34,7 +35,8 @@ const std::vector<ShapeRow>& shape_kinds() {
       {"radial",
        ShapeKind::Radial,
        {{"points", "coefficients"}, {"counts", "width"}},
-       1}};
+       1},
+      {"rims", ShapeKind::Rims, {{"curves", "coefficients"}, {"counts"}}, 2}};
   return kinds;
 }
 
@@ -143,6 +145,23 @@ std::shared_ptr<const PlaceShape> radial_shape(CaseContext& context,
   return radial_functions(shape);
 }
 
+std::shared_ptr<const PlaceShape> rim_shape(CaseContext& context,
+                                            const CaseTable& table,
+                                            const std::vector<int>& counts) {
+  const std::vector<std::string> curves = table.names("curves");
+  if (curves.size() != 2) {
+    context.problems.add(
+        table.line("curves"),
+        fmt::format("{}.curves has {}; expected two, from one to the other",
+                    table.path(), curves.size()));
+    return nullptr;
+  }
+  return walls::rim_splines({.first = curves[0],
+                             .second = curves[1],
+                             .along = counts[0],
+                             .around = counts[1]});
+}
+
 std::shared_ptr<const PlaceShape> make_shape(CaseContext& context,
                                              const CaseTable& table,
                                              const ShapeRow& row,
@@ -169,6 +188,8 @@ std::shared_ptr<const PlaceShape> make_shape(CaseContext& context,
           return nullptr;
         }
         return axis_splines({from, to, zero, counts[0], counts[1]});
+      case ShapeKind::Rims:
+        return rim_shape(context, table, counts);
     }
   } catch (const InvalidInput& error) {
     context.problems.add(table.line(),
@@ -224,6 +245,25 @@ void check_shape_name(CaseContext& context, const CaseTable& table) {
 
 }  // namespace
 
+void require_space(CaseContext& context, const case_data::Case& result,
+                   const case_data::PlaceQuantity& quantity) {
+  const std::size_t first = context.names.size() + 3;  // after x, y, z
+  for (const int name : quantity.quantity.expression.names_used()) {
+    const auto k = static_cast<std::size_t>(name);
+    if (k >= first && k - first < result.shapes.size() &&
+        result.shapes[k - first].shape != nullptr &&
+        walls::rim_splines_of(*result.shapes[k - first].shape) != nullptr) {
+      context.problems.add(
+          quantity.quantity.line,
+          fmt::format("{}: shape '{}' is of kind rims, which follows a film's "
+                      "points and is for a wall's thickness; a liquid's "
+                      "tension and pressure are of places: expected kind box, "
+                      "axis or radial",
+                      quantity.quantity.key, result.shapes[k - first].name));
+    }
+  }
+}
+
 TableSpec shape_table() {
   using D = Dimension;
   using K = KeyType;
@@ -237,8 +277,9 @@ TableSpec shape_table() {
       "lies between its least and largest coefficient; away from the bumps "
       "the nearest coefficient goes on",
       {{"kind", K::Choice, D::None, true,
-        "where the bumps stand: evenly in a box, along and around an axis, or "
-        "about points",
+        "where the bumps stand: evenly in a box, along and around an axis, "
+        "about points, or, for a wall's thickness alone, from one rim of its "
+        "films to another and around",
         case_data::choices_of(shape_kinds())},
        {"coefficients", K::Quantities, std::nullopt, true,
         "one per bump, the last of the counts running fastest: the name of a "
@@ -249,12 +290,17 @@ TableSpec shape_table() {
         "of box: the opposite corner; of axis: where it ends"},
        {"counts", K::Shape, D::None, false,
         "of box: along x, y, z; of axis: along and around it, where the axis "
-        "itself has no value with more than one around; of radial: so "
+        "itself has no value with more than one around; of rims: from the one "
+        "to the other and around; of radial: so "
         "many, evenly along the path of the points. Left out: the shape of the "
         "vector, of radial the points"},
        {"zero", K::ConstantVector, std::nullopt, false,
         "of axis: the direction of the first bump around it; x, or y, when "
         "left out"},
+       {"curves", K::Names, D::None, false,
+        "of rims: two, where films of the wall end. The bumps follow the "
+        "film's own harmonic coordinates: 0 on the first curve, 1 on the "
+        "second, and the angle from where the first one starts, its way"},
        {"points", K::Vectors, D::Length, false, "of radial: the bumps'"},
        {"width", K::Constant, D::Length, false,
         "of radial: exp(-d^2 / (2 width^2)); the mean distance to the nearest "

@@ -139,6 +139,10 @@ void read_fillets(CaseContext& context, const toml::table& root,
 /// noted.
 std::vector<int> read_shape(CaseContext& context, const CaseTable& table,
                             const char* key);
+/// Notes a shape in the quantity that has values on walls alone.
+void require_space(CaseContext& context, const case_data::Case& result,
+                   const case_data::PlaceQuantity& quantity);
+
 /// Names that expressions of a film's fields know from then on.
 void read_shapes(CaseContext& context, const toml::table& root,
                  case_data::Case& result);

@@ -74,6 +74,13 @@ to = [4, 0, 50]
 coefficients = "t"
 """
 
+RIMS = """
+[shapes.around]
+kind = "rims"
+curves = ["base", "head"]
+coefficients = "t"
+"""
+
 
 def vector(shape, initial, bounds, name="t"):
     return (f"\n[design.{name}]\nshape = {shape}\ninitial = {initial}\n"
@@ -83,6 +90,29 @@ def vector(shape, initial, bounds, name="t"):
 def solid(top, film, fields="", body="volume = 6.5e4"):
     return HEAD.format(top=top, film=film,
                        more=fields) + SOLID.replace("{body}", body)
+
+
+def wall(top):
+    """A short film as a wall of thickness "around"."""
+    return (HEAD.format(top=top, film="", more="""
+[walls.shell]
+films = ["skin"]
+thickness = "around*(1 + 0.002*z)"
+material = "steel"
+
+[load_cases.service]
+supports = [{ on = "skin/rim:base", fix = "xyz" }]
+loads = [{ on = "skin/rim:head", force = [1000, 200, 0] }]
+
+[resolution]
+fea = 5
+film = 5
+""") + """
+[responses.sway]
+kind = "mean_displacement"
+on = "skin/rim:head"
+direction = [1, 0, 0]
+""").replace("center = [4, 0, 50]", "center = [2, 0, 18]")
 
 
 class FieldsTest(ProgramTest):
@@ -134,26 +164,40 @@ pressure = "push*(50 - z)"
 """))
 
     def test_a_wall_of_a_field_has_exact_gradients(self):
-        self.check_gradient((HEAD.format(
-            top=vector([3, 2], 2.5, [2, 4]) + AXIS, film="", more="""
-[walls.shell]
-films = ["skin"]
-thickness = "around*(1 + 0.002*z)"
-material = "steel"
+        self.check_gradient(wall(vector([3, 2], 2.5, [2, 4]) + AXIS))
 
-[load_cases.service]
-supports = [{ on = "skin/rim:base", fix = "xyz" }]
-loads = [{ on = "skin/rim:head", force = [1000, 200, 0] }]
+    def test_a_wall_follows_its_films_own_coordinates(self):
+        """Harmonic ones: exact gradients, also by a design that moves the
+        rims; another mesh has the same wall; the first row stands at the first
+        curve, and the angle begins where that does."""
+        draw = random.Random(19)
+        initial = [[round(draw.uniform(2.2, 3.4), 3) for _ in range(5)]
+                   for _ in range(4)]
+        text = wall(vector([4, 5], initial, [2, 4]) + RIMS + """
+[design.up]
+initial = 0
+bounds = [-2, 2]
+""").replace("[2, 0, 18]", '[2, 0, "18 + up"]')
+        said = self.check_gradient(text)
+        self.assertIn("t [4 x 5]: 8 of its 20 elements", said)
+        coarse = self.run_case("coarse", text)["responses"]["mass"]
+        fine = self.run_case("fine", text, "--set",
+                             "resolution.film=2.5")["responses"]["mass"]
+        # The film itself differs by 2e-3: a catenoid's chords.
+        plain = [self.run_case(name, text.replace('"around*', '"2.7*'), *more)
+                 ["responses"]["mass"] for name, more in (
+                     ("plain", ()),
+                     ("plain_fine", ("--set", "resolution.film=2.5")))]
+        self.assertAlmostEqual(coarse / fine, plain[0] / plain[1], 3)
 
-[resolution]
-fea = 5
-film = 5
-""") + """
-[responses.sway]
-kind = "mean_displacement"
-on = "skin/rim:head"
-direction = [1, 0, 0]
-""").replace("center = [4, 0, 50]", "center = [2, 0, 18]"))
+    def test_a_shape_between_rims_is_of_its_walls_films(self):
+        (self.folder / "case.toml").write_text(
+            wall(vector([4, 5], 2.5, [2, 4])
+                 + RIMS.replace('"head"]', '"waist"]')))
+        self.expect(self.call("check", "case.toml"), 2,
+                    r"case.toml:\d+: walls.shell.thickness has a shape between "
+                    r"curves 'base' and 'waist'; no film of walls.shell ends at "
+                    r"'waist' \(they end at base, head\)")
 
     def test_a_study_shapes_the_tension(self):
         """At the same volume a field alone makes the strut stiffer."""

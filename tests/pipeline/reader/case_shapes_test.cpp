@@ -36,6 +36,12 @@ to = [0, 0, "length"]
          "\n";
 }
 
+std::string rims(const std::string& curves) {
+  return fmt::format(
+      "[shapes.skin_t]\nkind = \"rims\"\ncurves = [{}]\ncoefficients = 1\n",
+      curves);
+}
+
 case_data::EvaluatedCase numbers_of(const std::string& text) {
   const reader::CaseReading reading = reader::read_case_text(text, "case.toml");
   EXPECT_THAT(reading.problems, IsEmpty());
@@ -138,7 +144,7 @@ INSTANTIATE_TEST_SUITE_P(
     CaseShapes, ShapeMistake,
     testing::Values(
         Mistake{"Kind", strut_with("[shapes.skin_t]\nkind = \"boxes\"\n"),
-                "expected one of box, axis, radial"},
+                "expected one of box, axis, radial, rims"},
         Mistake{"Counts", strut_with(axis("coefficients = [1, 2]")),
                 "shapes.skin_t.coefficients has 2; the shape takes 1"},
         Mistake{"TooManyCounts",
@@ -190,6 +196,12 @@ INSTANTIATE_TEST_SUITE_P(
                 strut_with(changed(axis(), "initial = 1.2\nbounds = [0.5, 2]",
                                    "initial = 0\nbounds = [0, 2]")),
                 "films.skin.tension is 0 at"},
+        Mistake{"OfAFilmInItsTension", strut_with(rims("\"base\", \"head\"")),
+                "films.skin.tension: shape 'skin_t' is of kind rims"},
+        Mistake{"FromARimToItself", strut_with(rims("\"head\", \"head\"")),
+                "shapes.skin_t: from curve 'head' to itself"},
+        Mistake{"OfOneRim", strut_with(rims("\"head\"")),
+                "shapes.skin_t.curves has 1; expected two"},
         Mistake{"Unknown", strut_with(axis(), "\"skin_d\""), "skin_d"}),
     [](const testing::TestParamInfo<Mistake>& mistake) {
       return mistake.param.name;
