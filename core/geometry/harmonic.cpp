@@ -8,7 +8,6 @@
 #include <Eigen/Geometry>
 
 #include "core/error.h"
-#include "core/geometry/edge_key.h"
 #include "core/math/linear_solve.h"
 
 namespace meniscus {
@@ -19,30 +18,17 @@ constexpr double kLeastWeight = 1e-3;
 constexpr double kMostWeight = 1e3;
 
 /// Half the cotangent of the facet's angle opposite to its edge k.
-double half_cotangent(const Points& points, const Triangle& t, int k) {
+double edge_weight(const HarmonicProblem& problem, const Triangle& t, int k) {
+  const Points& points = problem.points;
   const Vec3& c = points[t[(k + 2) % 3]];
   const Vec3 a = points[t[k]] - c;
   const Vec3 b = points[t[(k + 1) % 3]] - c;
   const double area2 = a.cross(b).norm();
   const double cotangent = area2 > 0.0 ? a.dot(b) / area2 : kMostWeight;
-  return std::clamp(0.5 * cotangent, -kMostWeight, kMostWeight);
-}
-
-/// Cotangent weights of the facets' edges, held above 0 as sums: those of
-/// Delaunay meshes are exact.
-std::map<Edge, double> edge_weights(const HarmonicProblem& problem) {
-  std::map<Edge, double> result;
-  for (const int f : problem.facets) {
-    const Triangle& t = problem.mesh[f];
-    for (int k = 0; k < 3; ++k) {
-      result[edge_key(t[k], t[(k + 1) % 3])] +=
-          half_cotangent(problem.points, t, k);
-    }
-  }
-  for (auto& [edge, weight] : result) {
-    weight = std::clamp(weight, kLeastWeight, kMostWeight);
-  }
-  return result;
+  const double least = problem.weights == HarmonicWeights::Positive
+                           ? kLeastWeight
+                           : -kMostWeight;
+  return std::clamp(0.5 * cotangent, least, kMostWeight);
 }
 
 /// Numbers of the free vertices, -1 for others. Throws where none is fixed.
@@ -88,25 +74,18 @@ Eigen::MatrixXd harmonic(const HarmonicProblem& problem) {
       entries.emplace_back(row, unknown[w], -weight);
     }
   };
-  // Positive weights, so that a map onto a convex outline is one to one (Tutte
-  // 1963). Offsets make a function that jumps across a cut; an edge's jump is
-  // the same in both of its facets.
-  std::map<Edge, double> weights = edge_weights(problem);
+  // Offsets make a function that jumps across a cut.
   for (std::size_t i = 0; i < problem.facets.size(); ++i) {
     const Triangle& t = problem.mesh[problem.facets[i]];
     for (int k = 0; k < 3; ++k) {
       const int next = (k + 1) % 3;
-      const auto weight = weights.find(edge_key(t[k], t[next]));
-      if (weight == weights.end()) {
-        continue;  // done in another facet
-      }
+      const double weight = edge_weight(problem, t, k);
       const double jump =
           problem.offsets.empty()
               ? 0.0
               : problem.offsets[i][k] - problem.offsets[i][next];
-      half(t[k], t[next], weight->second, jump);
-      half(t[next], t[k], weight->second, -jump);
-      weights.erase(weight);
+      half(t[k], t[next], weight, jump);
+      half(t[next], t[k], weight, -jump);
     }
   }
   Eigen::MatrixXd result = problem.values;

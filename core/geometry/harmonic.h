@@ -1,6 +1,5 @@
 /// Harmonic functions on triangle meshes, by cotangent weights (Pinkall,
-/// Polthier 1993) held above zero, so that maps onto convex outlines are one to
-/// one (Tutte 1963; Floater 2003).
+/// Polthier 1993).
 #pragma once
 
 #include <array>
@@ -9,6 +8,14 @@
 #include "core/geometry/surface_mesh.h"
 
 namespace meniscus {
+
+enum class HarmonicWeights {
+  /// Of every facet held above zero: maps onto convex outlines are one to one
+  /// on any mesh (Tutte 1963; Floater 2003), and obtuse facets too stiff.
+  Positive,
+  /// The energy's own, second order on any mesh.
+  Exact,
+};
 
 struct HarmonicProblem {
   const Points& points;
@@ -19,10 +26,12 @@ struct HarmonicProblem {
   // What a corner's value exceeds its vertex's by, per facet of `facets`;
   // empty: nothing. For functions that gain 1 around a tube.
   std::vector<std::array<int, 3>> offsets = {};
+  HarmonicWeights weights = HarmonicWeights::Positive;
 };
 
-/// The values at all points of the facets; others keep theirs. Throws
-/// MeshError where nothing is fixed, and for a part without a fixed point.
+/// The values at all points of the facets; others keep theirs. Each connected
+/// part needs a fixed point. Throws MeshError where nothing is fixed, and where
+/// rounding does not hide that a part has none.
 Eigen::MatrixXd harmonic(const HarmonicProblem& problem);
 
 /// Corner offsets of the tube between two loops, and the path of vertices from

@@ -5,11 +5,14 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <set>
 
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "core/error.h"
 #include "core/geometry/harmonic.h"
+#include "core/math/union_find.h"
 
 namespace meniscus::walls {
 
@@ -112,9 +115,10 @@ class Coordinates {
   Places places(const RimSplines& splines) const {
     const WallRim first = rim(splines.first);
     const WallRim second = rim(splines.second);
+    check_reach(first, second);
     const Eigen::VectorXd u = heights(first, second);
     const Eigen::VectorXd turns = splines.around > 1
-                                      ? angles(first, second)
+                                      ? angles(splines, first, second)
                                       : Eigen::VectorXd::Zero(u.size());
     Places result;
     for (Eigen::Index v = 0; v < u.size(); ++v) {
@@ -132,8 +136,15 @@ class Coordinates {
   WallRim rim(const std::string& curve) const {
     std::vector<std::pair<double, int>> order;
     for (const WallRim& rim : rims_) {
-      for (std::size_t k = 0; rim.name == curve && k < rim.vertices.size();
-           ++k) {
+      if (rim.name != curve) {
+        continue;
+      }
+      if (rim.t.size() != rim.vertices.size()) {
+        throw InvalidInput(
+            fmt::format("{}: curve '{}' has {} points with {} parameters",
+                        where_, curve, rim.vertices.size(), rim.t.size()));
+      }
+      for (std::size_t k = 0; k < rim.vertices.size(); ++k) {
         if (on_wall_[rim.vertices[k]] != 0) {
           order.emplace_back(rim.t[k], rim.vertices[k]);
         }
@@ -152,9 +163,34 @@ class Coordinates {
     return result;
   }
 
+  /// Each connected part of the films must end at both curves.
+  void check_reach(const WallRim& first, const WallRim& second) const {
+    UnionFind parts(mesh_.points.size());
+    for (const int f : facets_) {
+      const Triangle& t = mesh_.facets[f];
+      parts.join(t[0], t[1]);
+      parts.join(t[0], t[2]);
+    }
+    for (const WallRim& rim : {first, second}) {
+      std::set<int> reached;
+      for (const int v : rim.vertices) {
+        reached.insert(parts.root(v));
+      }
+      for (const int f : facets_) {
+        if (reached.count(parts.root(mesh_.facets[f][0])) == 0) {
+          throw InvalidInput(fmt::format(
+              "{} do not all reach curve '{}': give film '{}' a wall of its "
+              "own",
+              where_, rim.name, mesh_.labels[mesh_.facet_label[f]]));
+        }
+      }
+    }
+  }
+
   HarmonicProblem problem() const {
     const std::size_t count = mesh_.points.size();
     HarmonicProblem result{mesh_.points, mesh_.facets, facets_, {}, {}, {}};
+    result.weights = HarmonicWeights::Exact;
     result.fixed.assign(count, 0);
     result.values = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(count), 1);
     return result;
@@ -164,7 +200,7 @@ class Coordinates {
     try {
       return harmonic(problem).col(0);
     } catch (const MeshError& error) {
-      throw MeshError(fmt::format("{}: {}", where_, error.what()));
+      throw InvalidInput(fmt::format("{}: {}", where_, error.what()));
     }
   }
 
@@ -180,8 +216,17 @@ class Coordinates {
     return solve(result);
   }
 
-  /// Free at both rims and all others, from where `first` starts.
-  Eigen::VectorXd angles(const WallRim& first, const WallRim& second) const {
+  /// Free at both rims and all others.
+  Eigen::VectorXd angles(const RimSplines& splines, const WallRim& first,
+                         const WallRim& second) const {
+    for (const int f : facets_) {
+      if (mesh_.facet_label[f] != mesh_.facet_label[facets_[0]]) {
+        throw InvalidInput(fmt::format(
+            "{} are several; a shape with more than one coefficient around is "
+            "for a wall of one film",
+            where_));
+      }
+    }
     HarmonicProblem result = problem();
     TubeCut cut = cut_tube(mesh_.facets, mesh_.points.size(), facets_,
                            first.vertices, second.vertices);
@@ -194,18 +239,69 @@ class Coordinates {
       gain += wrapped(turns[loop[(k + 1) % loop.size()]] - turns[loop[k]]);
     }
     if (std::abs(std::abs(gain) - 1.0) > 0.5) {
-      throw MeshError(fmt::format(
+      throw InvalidInput(fmt::format(
           "{} make no tube from curve '{}' to '{}': no angle goes around",
           where_, first.name, second.name));
     }
     turns *= gain;
-    // Where t is 0, between the last point and the first.
-    const double before = 1.0 - first.t.back();
-    const double after = first.t.front();
-    const double share = after > 0.0 ? before / (before + after) : 1.0;
-    const double last = turns[loop.back()];
-    const double start = last + share * wrapped(turns[loop.front()] - last);
+    const auto [before, after, share] = start_of(first, splines.zero);
+    const double start =
+        turns[before] + share * wrapped(turns[after] - turns[before]);
     return turns.array() - start;
+  }
+
+  /// Between two neighbours on the rim, and how far from the one to the other.
+  struct Start {
+    int before = 0;
+    int after = 0;
+    double share = 0.0;
+  };
+
+  Start start_of(const WallRim& rim, const std::optional<Vec3>& zero) const {
+    const std::vector<int>& loop = rim.vertices;
+    if (!zero) {  // t = 0, between the last point and the first
+      const double before = 1.0 - rim.t.back();
+      const double after = rim.t.front();
+      return {loop.back(), loop.front(),
+              after > 0.0 ? before / (before + after) : 1.0};
+    }
+    Vec3 middle = Vec3::Zero();
+    for (const int v : loop) {
+      middle += mesh_.points[v] / static_cast<double>(loop.size());
+    }
+    Vec3 normal = Vec3::Zero();
+    const auto next = [&](std::size_t k) {
+      return mesh_.points[loop[(k + 1) % loop.size()]] - middle;
+    };
+    for (std::size_t k = 0; k < loop.size(); ++k) {
+      normal += (mesh_.points[loop[k]] - middle).cross(next(k));
+    }
+    const Vec3 across = normal.cross(*zero);  // a quarter of a turn further
+    if (!(across.norm() > 1e-9 * normal.norm() * zero->norm())) {
+      throw InvalidInput(
+          fmt::format("{}: zero, ({:g}, {:g}, {:g}), has no length across "
+                      "curve '{}'",
+                      where_, zero->x(), zero->y(), zero->z(), rim.name));
+    }
+    // The rim passes the half plane of zero where it goes over to the side of
+    // `across`; where several times, the farthest counts.
+    Start result;
+    double farthest = -1.0;
+    for (std::size_t k = 0; k < loop.size(); ++k) {
+      const double from = across.dot(mesh_.points[loop[k]] - middle);
+      const double to = across.dot(next(k));
+      if (from > 0.0 || !(to > 0.0)) {
+        continue;
+      }
+      const double share = from / (from - to);
+      const Vec3 at = mesh_.points[loop[k]] - middle +
+                      share * (next(k) - (mesh_.points[loop[k]] - middle));
+      if (at.dot(*zero) > farthest) {
+        farthest = at.dot(*zero);
+        result = {loop[k], loop[(k + 1) % loop.size()], share};
+      }
+    }
+    return result;
   }
 
   const SurfaceMesh& mesh_;
@@ -221,6 +317,9 @@ std::shared_ptr<const PlaceShape> rim_splines(const RimSplines& splines) {
   if (splines.first == splines.second) {
     throw InvalidInput(
         fmt::format("from curve '{}' to itself; expected two", splines.first));
+  }
+  if (splines.zero && !(splines.zero->norm() > 0.0)) {
+    throw InvalidInput("zero has no length; expected a direction");
   }
   return std::make_shared<Unlaid>(splines);
 }
@@ -251,7 +350,9 @@ std::vector<WallSpec> on_films(const std::vector<WallSpec>& walls,
       const Coordinates coordinates(
           mesh, std::move(facets), rims,
           fmt::format("walls.{}: thickness \"{}\": its films", result[w].name,
-                      result[w].thickness.text));
+                      result[w].thickness.text.empty()
+                          ? result[w].thickness.formula.text()
+                          : result[w].thickness.text));
       shape = std::make_shared<Laid>(*splines, coordinates.places(*splines));
     }
   }

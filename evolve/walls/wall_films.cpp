@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 
 #include "evolve/walls/rim_shape.h"
+#include "evolve/walls/wall_reference.h"
 
 namespace meniscus::walls {
 
@@ -63,9 +64,8 @@ std::vector<double> usual_thicknesses(const WallFilms& films,
   }
   std::vector<double> result;
   for (std::size_t w = 0; w < walls.size(); ++w) {
-    const PlaceField& thickness = walls[w].thickness;
     const Vec3& at = films.mesh.points[std::max(first[w], 0)];
-    result.push_back(value_at(thickness, thickness.own(), at));
+    result.push_back(thickness_at(walls[w], walls[w].thickness.own(), at));
   }
   return result;
 }

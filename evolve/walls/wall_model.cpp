@@ -22,6 +22,7 @@ std::vector<WallSpec> on_finest(const std::vector<WallSpec>& walls,
                                 const WallFilms& films) {
   SurfaceMesh finest;
   finest.points = films.mesh.points;
+  finest.labels = films.mesh.labels;
   for (const WallFacet& facet : topology.facets) {
     finest.facets.push_back(facet.film);
     finest.facet_label.push_back(facet.label);

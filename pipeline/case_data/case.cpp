@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <set>
 #include <span>
 
 #include <fmt/format.h>
@@ -343,11 +344,34 @@ std::vector<std::string> curves_under(const Case& input,
   return curves;
 }
 
-/// Whether the thickness has shapes between rims, whose values are the walls'
-/// own; tells of those whose curves the wall's films do not end at.
+/// Shapes between rims have no values before their films are there: the field
+/// with each at its least or at its largest coefficient.
+PlaceField at_extreme(const PlaceField& field, bool largest) {
+  PlaceField result = field;
+  const auto first = std::ssize(field.names);
+  std::vector<double> numbers(field.numbers.begin(),
+                              field.numbers.begin() + first);
+  Eigen::Index at = first;
+  for (auto& shape : result.shapes) {
+    const auto own = field.numbers.segment(at, shape->coefficients());
+    at += own.size();
+    if (walls::rim_splines_of(*shape) == nullptr) {
+      numbers.insert(numbers.end(), own.begin(), own.end());
+      continue;
+    }
+    shape = radial_functions({.points = {Vec3::Zero()}});  // 1 everywhere
+    numbers.push_back(largest ? own.maxCoeff() : own.minCoeff());
+  }
+  result.numbers =
+      Eigen::Map<const VectorX>(numbers.data(), std::ssize(numbers));
+  return result;
+}
+
+/// Tells of shapes between rims that do not suit the wall's films. Has it any?
 bool check_rim_shapes(const Case& input, const walls::WallSpec& wall,
                       const PlaceQuantity& from, const CaseValues& values) {
-  const std::vector<std::string> ends = curves_under(input, wall.films);
+  const std::vector<std::string> under = curves_under(input, wall.films);
+  const std::set<std::string> ends(under.begin(), under.end());
   bool found = false;
   for (const auto& shape : wall.thickness.shapes) {
     const walls::RimSplines* splines =
@@ -356,14 +380,22 @@ bool check_rim_shapes(const Case& input, const walls::WallSpec& wall,
       continue;
     }
     found = true;
+    const std::string where = fmt::format(
+        "{}: {}", place(input, from.quantity.line), from.quantity.key);
     for (const std::string& curve : {splines->first, splines->second}) {
-      if (std::find(ends.begin(), ends.end(), curve) == ends.end()) {
+      if (ends.count(curve) == 0) {
         values.problems().push_back(fmt::format(
-            "{}: {} has a shape between curves '{}' and '{}'; no film of "
-            "walls.{} ends at '{}' (they end at {})",
-            place(input, from.quantity.line), from.quantity.key, splines->first,
-            splines->second, wall.name, curve, fmt::join(ends, ", ")));
+            "{} has a shape between curves '{}' and '{}'; no film of walls.{} "
+            "ends at '{}' (they end at {})",
+            where, splines->first, splines->second, wall.name, curve,
+            fmt::join(ends, ", ")));
       }
+    }
+    if (splines->around > 1 && wall.films.size() > 1) {
+      values.problems().push_back(fmt::format(
+          "{} has a shape of {} coefficients around, and walls.{} {} films; "
+          "expected one film, a tube between the two curves, or 1 around",
+          where, splines->around, wall.name, wall.films.size()));
     }
   }
   return found;
@@ -381,10 +413,19 @@ void check_places(const Case& input, const EvaluatedCase& inputs,
   }
   for (std::size_t k = 0; k < input.walls.size(); ++k) {
     const walls::WallSpec& wall = inputs.walls[k];
-    if (!check_rim_shapes(input, wall, input.walls[k].thickness, values)) {
-      check_on_curves(input, inputs.film_system,
-                      curves_under(input, wall.films), input.walls[k].thickness,
-                      wall.thickness, values);
+    const PlaceQuantity& from = input.walls[k].thickness;
+    const std::vector<std::string> curves = curves_under(input, wall.films);
+    const std::size_t before = values.problems().size();
+    if (!check_rim_shapes(input, wall, from, values)) {
+      check_on_curves(input, inputs.film_system, curves, from, wall.thickness,
+                      values);
+      continue;
+    }
+    for (const bool largest : {false, true}) {
+      if (values.problems().size() == before) {
+        check_on_curves(input, inputs.film_system, curves, from,
+                        at_extreme(wall.thickness, largest), values);
+      }
     }
   }
 }

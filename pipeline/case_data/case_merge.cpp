@@ -9,6 +9,7 @@
 #include "core/geometry/surface_mesh.h"
 #include "core/math/union_find.h"
 #include "evolve/curves/curve_contact.h"
+#include "evolve/walls/rim_shape.h"
 #include "pipeline/case_data/case_curves.h"
 
 namespace meniscus::case_data {
@@ -157,6 +158,21 @@ void merge_curves(Case& input, CaseProblems& problems) {
   for (FilmEntry& film : input.films) {
     rename(kept, "films." + film.spec.name, film.line, film.spec.curves,
            problems);
+  }
+  for (ShapeEntry& entry : input.shapes) {
+    const walls::RimSplines* between =
+        entry.shape != nullptr ? walls::rim_splines_of(*entry.shape) : nullptr;
+    if (between != nullptr) {
+      walls::RimSplines splines = *between;
+      std::vector<std::string> names = {splines.first, splines.second};
+      const std::size_t before = problems.size();
+      rename(kept, "shapes." + entry.name, entry.line, names, problems);
+      if (problems.size() == before) {
+        splines.first = names[0];
+        splines.second = names[1];
+        entry.shape = walls::rim_splines(splines);
+      }
+    }
   }
   for (StepSolidEntry& solid : input.step_solids) {
     for (films::SolidSpec::Rim& rim : solid.spec.rims) {

@@ -36,7 +36,10 @@ const std::vector<ShapeRow>& shape_kinds() {
        ShapeKind::Radial,
        {{"points", "coefficients"}, {"counts", "width"}},
        1},
-      {"rims", ShapeKind::Rims, {{"curves", "coefficients"}, {"counts"}}, 2}};
+      {"rims",
+       ShapeKind::Rims,
+       {{"curves", "coefficients"}, {"counts", "zero"}},
+       2}};
   return kinds;
 }
 
@@ -148,7 +151,11 @@ std::shared_ptr<const PlaceShape> radial_shape(CaseContext& context,
 std::shared_ptr<const PlaceShape> rim_shape(CaseContext& context,
                                             const CaseTable& table,
                                             const std::vector<int>& counts) {
+  const std::size_t before = context.problems.size();
   const std::vector<std::string> curves = table.names("curves");
+  if (context.problems.size() > before || !table.has("curves")) {
+    return nullptr;  // told
+  }
   if (curves.size() != 2) {
     context.problems.add(
         table.line("curves"),
@@ -159,7 +166,8 @@ std::shared_ptr<const PlaceShape> rim_shape(CaseContext& context,
   return walls::rim_splines({.first = curves[0],
                              .second = curves[1],
                              .along = counts[0],
-                             .around = counts[1]});
+                             .around = counts[1],
+                             .zero = table.constant_vector("zero")});
 }
 
 std::shared_ptr<const PlaceShape> make_shape(CaseContext& context,
@@ -264,6 +272,25 @@ void require_space(CaseContext& context, const case_data::Case& result,
   }
 }
 
+void check_rim_shapes(CaseContext& context, const case_data::Case& result) {
+  std::vector<std::string> known;
+  for (const case_data::CurveEntry& curve : result.curves) {
+    known.push_back(curve.name);
+  }
+  for (const case_data::ShapeEntry& entry : result.shapes) {
+    const walls::RimSplines* splines =
+        entry.shape != nullptr ? walls::rim_splines_of(*entry.shape) : nullptr;
+    for (const std::string& curve :
+         splines != nullptr
+             ? std::vector<std::string>{splines->first, splines->second}
+             : std::vector<std::string>()) {
+      if (std::find(known.begin(), known.end(), curve) == known.end()) {
+        context.problems.unknown(entry.line, "curve", curve, known);
+      }
+    }
+  }
+}
+
 TableSpec shape_table() {
   using D = Dimension;
   using K = KeyType;
@@ -295,12 +322,13 @@ TableSpec shape_table() {
         "many, evenly along the path of the points. Left out: the shape of the "
         "vector, of radial the points"},
        {"zero", K::ConstantVector, std::nullopt, false,
-        "of axis: the direction of the first bump around it; x, or y, when "
-        "left out"},
+        "of axis and rims: the direction of the first bump around. Left out: "
+        "of "
+        "axis x, or y, of rims where the first curve starts"},
        {"curves", K::Names, D::None, false,
         "of rims: two, where films of the wall end. The bumps follow the "
         "film's own harmonic coordinates: 0 on the first curve, 1 on the "
-        "second, and the angle from where the first one starts, its way"},
+        "second, and the angle, the way of the first"},
        {"points", K::Vectors, D::Length, false, "of radial: the bumps'"},
        {"width", K::Constant, D::Length, false,
         "of radial: exp(-d^2 / (2 width^2)); the mean distance to the nearest "

@@ -282,6 +282,7 @@ void read_tables(const toml::table& root, const OverriddenNodes& overridden,
   read_symmetry(context, root, result);
   read_shapes(context, root, result);
   read_geometry(context, root, result);
+  check_rim_shapes(context, result);
   read_walls(context, root, result);
   read_fillets(context, root, result);
   read_fields(context, root, result);

@@ -143,6 +143,9 @@ std::vector<int> read_shape(CaseContext& context, const CaseTable& table,
 void require_space(CaseContext& context, const case_data::Case& result,
                    const case_data::PlaceQuantity& quantity);
 
+/// Notes curves that shapes name and the case has not.
+void check_rim_shapes(CaseContext& context, const case_data::Case& result);
+
 /// Names that expressions of a film's fields know from then on.
 void read_shapes(CaseContext& context, const toml::table& root,
                  case_data::Case& result);

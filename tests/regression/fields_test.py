@@ -81,6 +81,12 @@ curves = ["base", "head"]
 coefficients = "t"
 """
 
+CENTRES = "".join(f"""
+[responses.c{"xyz"[k]}]
+kind = "centre_of_mass"
+direction = {[int(m == k) for m in range(3)]}
+""" for k in range(3))
+
 
 def vector(shape, initial, bounds, name="t"):
     return (f"\n[design.{name}]\nshape = {shape}\ninitial = {initial}\n"
@@ -167,37 +173,70 @@ pressure = "push*(50 - z)"
         self.check_gradient(wall(vector([3, 2], 2.5, [2, 4]) + AXIS))
 
     def test_a_wall_follows_its_films_own_coordinates(self):
-        """Harmonic ones: exact gradients, also by a design that moves the
-        rims; another mesh has the same wall; the first row stands at the first
-        curve, and the angle begins where that does."""
+        """Harmonic ones: exact gradients, also by a design that moves the rims;
+        the first row stands at the first curve, and the angle begins where it is
+        asked to and runs as that curve does."""
         draw = random.Random(19)
         initial = [[round(draw.uniform(2.2, 3.4), 3) for _ in range(5)]
                    for _ in range(4)]
-        text = wall(vector([4, 5], initial, [2, 4]) + RIMS + """
+        said = self.check_gradient(wall(vector([4, 5], initial, [2, 4]) + RIMS
+                                        + """
 [design.up]
 initial = 0
 bounds = [-2, 2]
-""").replace("[2, 0, 18]", '[2, 0, "18 + up"]')
-        said = self.check_gradient(text)
+""").replace("[2, 0, 18]", '[2, 0, "18 + up"]'))
         self.assertIn("t [4 x 5]: 8 of its 20 elements", said)
-        coarse = self.run_case("coarse", text)["responses"]["mass"]
-        fine = self.run_case("fine", text, "--set",
-                             "resolution.film=2.5")["responses"]["mass"]
-        # The film itself differs by 2e-3: a catenoid's chords.
-        plain = [self.run_case(name, text.replace('"around*', '"2.7*'), *more)
-                 ["responses"]["mass"] for name, more in (
-                     ("plain", ()),
-                     ("plain_fine", ("--set", "resolution.film=2.5")))]
-        self.assertAlmostEqual(coarse / fine, plain[0] / plain[1], 3)
+        # Thick towards +y, then on one way around: x tells which.
+        text = (wall(vector([1, 4], [[3, 2.6, 2.2, 2.2]], [2, 4])
+                     + RIMS + "zero = [0, 1, 0]\n") + CENTRES).replace(
+                         "[2, 0, 18]", "[0, 0, 18]").replace(
+                             "radius = 20", "radius = 25")
+        centre = {}
+        for name, normal in (("down", "-1"), ("up", "1")):
+            found = self.run_case(name, text.replace(
+                "normal = [0, 0, -1]", f"normal = [0, 0, {normal}]"), "--set",
+                "resolution.film=2.5")["responses"]
+            centre[name] = found["cx"], found["cy"]
+        self.assertGreater(centre["up"][1], 0.5)
+        self.assertLess(centre["up"][0], -0.1)  # counter-clockwise from +y: -x
+        self.assertAlmostEqual(centre["down"][0] / centre["up"][0], -1, 2)
+        self.assertAlmostEqual(centre["down"][1] / centre["up"][1], 1, 2)
+        # Rows: thick at the foot or at the head.
+        for name, rows in (("low", [[3], [2.5], [2.5]]),
+                           ("high", [[2.5], [2.5], [3]])):
+            centre[name] = self.run_case(
+                name, (wall(vector([3, 1], rows, [2, 4]) + RIMS) + CENTRES)
+                .replace("[2, 0, 18]", "[0, 0, 18]")
+                .replace("radius = 20", "radius = 25")
+                .replace('*(1 + 0.002*z)', ''))["responses"]["cz"]
+        self.assertLess(centre["low"], 8.9)
+        self.assertAlmostEqual(centre["low"] + centre["high"], 18, 2)
 
     def test_a_shape_between_rims_is_of_its_walls_films(self):
-        (self.folder / "case.toml").write_text(
-            wall(vector([4, 5], 2.5, [2, 4])
-                 + RIMS.replace('"head"]', '"waist"]')))
+        waist = wall(vector([4, 5], 2.5, [2, 4])
+                     + RIMS.replace('"head"]', '"waist"]'))
+        (self.folder / "case.toml").write_text(waist)
+        self.expect(self.call("check", "case.toml"), 2,
+                    r"case.toml:\d+: there is no curve 'waist'; there are base, "
+                    r"head")
+        (self.folder / "case.toml").write_text(waist.replace("[curves.head]", """
+[curves.waist]
+kind = "circle"
+center = [1, 0, 9]
+normal = [0, 0, 1]
+radius = 22
+
+[curves.head]"""))
         self.expect(self.call("check", "case.toml"), 2,
                     r"case.toml:\d+: walls.shell.thickness has a shape between "
                     r"curves 'base' and 'waist'; no film of walls.shell ends at "
                     r"'waist' \(they end at base, head\)")
+        (self.folder / "case.toml").write_text(
+            wall(vector([4, 5], 2.5, [2, 4]) + RIMS).replace(
+                '"around*', '"(around - 2.2)*'))
+        self.expect(self.call("check", "case.toml"), 2,
+                    r"case.toml:\d+: walls.shell.thickness is -0.2 at .*with "
+                    r"'t\[1,1\]' at the end of its bounds, 2")
 
     def test_a_study_shapes_the_tension(self):
         """At the same volume a field alone makes the strut stiffer."""

@@ -2,6 +2,7 @@
 #include "evolve/walls/rim_shape.h"
 
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <random>
 
@@ -10,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
+#include "core/geometry/edge_key.h"
 
 namespace meniscus::rim_shape_test {
 namespace {
@@ -29,6 +31,7 @@ struct Cone {
   double start = 0.0;      // angle of the foot's t = 0 [turns]
   bool clockwise = false;  // the foot's t
   unsigned seed = 1;
+  double shake = 0.1;  // of the edges
 };
 
 struct Film {
@@ -38,7 +41,7 @@ struct Film {
 
 Film film_of(const Cone& cone) {
   std::mt19937 random(cone.seed);
-  std::uniform_real_distribution<double> shake(-0.1, 0.1);
+  std::uniform_real_distribution<double> shake(-cone.shake, cone.shake);
   Film film;
   const double slant = std::hypot(cone.height, cone.foot - cone.head);
   const double radius = 0.5 * (cone.foot + cone.head);
@@ -113,9 +116,8 @@ VectorX drawn(int count, unsigned seed) {
 
 /// The largest distance to the same splines over the cone's exact coordinates:
 /// its angle, and the logarithm of its distance from the apex.
-double error_of(const Cone& cone) {
+double error_of(const Cone& cone, const Film& film) {
   const VectorX c = drawn(4 * 5, 11);
-  const Film film = film_of(cone);
   const PlaceField field = laid_on(film, wall_of({"foot", "head", 4, 5}, c));
   const auto exact = axis_splines({.along = 4, .around = 5});
   double worst = 0.0;
@@ -148,9 +150,9 @@ TEST(RimShape, FollowsTheCoordinatesOfCones) {
     if (draw == 0) {
       cone.foot = 1.0;
     }
-    const double coarse = error_of(cone);
+    const double coarse = error_of(cone, film_of(cone));
     cone.around *= 4;
-    const double fine = error_of(cone);
+    const double fine = error_of(cone, film_of(cone));
     EXPECT_LT(coarse, 0.02) << draw;
     EXPECT_LT(fine, coarse / 8.0) << draw;
   }
@@ -161,6 +163,110 @@ double at_height(const VectorX& c, double u) {
   return axis_splines({.along = static_cast<int>(c.size())})
       ->jet({1, 0, u}, {c.data(), static_cast<std::size_t>(c.size())})
       .value;
+}
+
+/// Every facet in four, new points on the cone, t of new rim points between.
+Film refined(const Film& film, const Cone& cone) {
+  Film result = film;
+  result.mesh.facets.clear();
+  std::map<Edge, int> middle;
+  std::map<int, double> t_of;  // of either rim's points
+  for (const walls::WallRim& rim : film.rims) {
+    for (std::size_t k = 0; k < rim.vertices.size(); ++k) {
+      t_of[rim.vertices[k]] = rim.t[k];
+    }
+  }
+  const auto middle_of = [&](int a, int b) {
+    const auto [at, is_new] =
+        middle.try_emplace(edge_key(a, b), std::ssize(result.mesh.points));
+    if (!is_new) {
+      return at->second;
+    }
+    Vec3 p = 0.5 * (film.mesh.points[a] + film.mesh.points[b]);
+    const double r = cone.foot + p.z() / cone.height * (cone.head - cone.foot);
+    p.head<2>() *= r / p.head<2>().norm();
+    result.mesh.points.push_back(p);
+    for (int end = 0; end < 2; ++end) {
+      if (p.z() == (end == 0 ? 0.0 : cone.height)) {
+        double t = std::atan2(p.y(), p.x()) / kTurn - cone.start;
+        t *= cone.clockwise ? -1.0 : 1.0;
+        result.rims[end].vertices.push_back(at->second);
+        result.rims[end].t.push_back(t - std::floor(t));
+      }
+    }
+    return at->second;
+  };
+  for (const Triangle& t : film.mesh.facets) {
+    const Triangle m = {middle_of(t[0], t[1]), middle_of(t[1], t[2]),
+                        middle_of(t[2], t[0])};
+    result.mesh.facets.push_back({t[0], m[0], m[2]});
+    result.mesh.facets.push_back({t[1], m[1], m[0]});
+    result.mesh.facets.push_back({t[2], m[2], m[1]});
+    result.mesh.facets.push_back(m);
+  }
+  result.mesh.facet_label.assign(result.mesh.facets.size(), 0);
+  return result;
+}
+
+// Halves of obtuse facets are no Delaunay mesh: weights held above 0 would keep
+// their error on all levels.
+TEST(RimShape, FollowsThemOnNestedRefinements) {
+  for (const unsigned seed : {1U, 2U, 3U}) {
+    const Cone cone{.foot = 1.2,
+                    .head = 0.7,
+                    .start = 0.1,
+                    .clockwise = seed == 2,
+                    .seed = seed,
+                    .shake = 0.3};
+    Film film = film_of(cone);
+    std::vector<double> errors = {error_of(cone, film)};
+    for (int level = 0; level < 3; ++level) {
+      film = refined(film, cone);
+      errors.push_back(error_of(cone, film));
+    }
+    EXPECT_LT(errors[0], 5e-3) << seed;
+    EXPECT_LT(errors[3], errors[0] / 16.0) << seed;
+  }
+}
+
+TEST(RimShape, BeginsTowardsItsZero) {
+  std::mt19937 random(17);
+  std::uniform_real_distribution<double> part(0.0, 1.0);
+  for (int draw = 0; draw < 8; ++draw) {
+    Cone cone{.foot = 1.1,
+              .head = 0.9,
+              .around = 96,
+              .start = part(random),  // of t, which does not count
+              .clockwise = draw % 2 == 1,
+              .seed = static_cast<unsigned>(draw)};
+    const Film film = film_of(cone);
+    const double zero = kTurn * part(random);
+    const VectorX c = drawn(5, 7);
+    const PlaceField field = laid_on(
+        film, wall_of({.first = "foot",
+                       .second = "head",
+                       .around = 5,
+                       .zero = 3.0 * Vec3(std::cos(zero), std::sin(zero), 0.4)},
+                      c));
+    const auto exact = axis_splines({.around = 5});
+    for (const Vec3& p : film.mesh.points) {
+      const double angle =
+          (std::atan2(p.y(), p.x()) - zero) * (cone.clockwise ? -1.0 : 1.0);
+      EXPECT_NEAR(
+          value_at(field, field.own(), p),
+          exact->jet({std::cos(angle), std::sin(angle), 0.0}, {c.data(), 5})
+              .value,
+          5e-3)
+          << draw;
+    }
+  }
+  const Film film = film_of({});
+  EXPECT_THROW(laid_on(film, wall_of({.first = "foot",
+                                      .second = "head",
+                                      .around = 2,
+                                      .zero = Vec3::UnitZ()},
+                                     drawn(2, 1))),
+               InvalidInput);
 }
 
 TEST(RimShape, RunsFromTheFirstCurveToTheSecond) {
@@ -291,8 +397,39 @@ TEST(RimShape, RefusesWhatHasNoSuchCoordinates) {
         laid_on(film, wall_of({"foot", "waist", 4, 1}, c));
       },
       testing::ThrowsMessage<InvalidInput>(
-          HasSubstr("walls.shell: thickness \"\": its films do not end at "
+          HasSubstr("walls.shell: thickness \"s\": its films do not end at "
                     "curve 'waist'")));
+  // Parts that a curve is not the end of; several films around.
+  Film two = film;
+  const auto shift = static_cast<int>(film.mesh.points.size());
+  for (const Vec3& p : film.mesh.points) {
+    two.mesh.points.emplace_back(p.x() + 9.0, p.y(), p.z());
+  }
+  for (const Triangle& t : film.mesh.facets) {
+    two.mesh.facets.push_back({t[0] + shift, t[1] + shift, t[2] + shift});
+    two.mesh.facet_label.push_back(1);
+  }
+  two.mesh.labels = {"skin", "other"};
+  const auto lay_two = [&](int around) {
+    walls::on_films({wall_of({"foot", "head", 4 / around, around}, c)},
+                    two.mesh, {0, 0}, two.rims);
+  };
+  EXPECT_THAT([&] { lay_two(1); },
+              testing::ThrowsMessage<InvalidInput>(
+                  HasSubstr("do not all reach curve 'foot': give film 'other' "
+                            "a wall of its own")));
+  for (std::size_t k = 0; k < 2; ++k) {
+    walls::WallRim& rim = two.rims[k];
+    for (std::size_t i = 0; i < film.rims[k].vertices.size(); ++i) {
+      rim.vertices.push_back(film.rims[k].vertices[i] + shift);
+      rim.t.push_back(film.rims[k].t[i]);
+    }
+  }
+  EXPECT_NO_THROW(lay_two(1));
+  EXPECT_THAT([&] { lay_two(2); }, testing::ThrowsMessage<InvalidInput>(
+                                       HasSubstr("is for a wall of one film")));
+  two.rims[0].t.clear();
+  EXPECT_THROW(lay_two(1), InvalidInput);
   // Not yet on a film: no value.
   const walls::WallSpec wall = wall_of({"foot", "head", 4, 1}, c);
   EXPECT_THROW(
@@ -318,7 +455,7 @@ TEST(RimShape, RefusesWhatHasNoSuchCoordinates) {
       [&] {
         laid_on(strip, wall_of({"foot", "head", 2, 2}, c));
       },
-      testing::ThrowsMessage<MeshError>(
+      testing::ThrowsMessage<InvalidInput>(
           HasSubstr("make no tube from curve 'foot' to 'head'")));
 }
 
