@@ -70,7 +70,7 @@ class Film:
         self.facets = []  # (three points, is a cap)
         self.bodies = []  # (facets with a sign, from 1, "volume 3")
         self.lines = {}   # of points (a, b) -> marks of the edge a-b
-        self.rims = 0
+        self.held = []    # Rim
 
     def point(self, place, mark=""):
         self.points.append(tuple(place))
@@ -83,8 +83,8 @@ class Film:
 
     def rim(self, rim, count):
         """Its points, held, and the edges between them."""
-        self.rims += 1
-        number = self.rims
+        self.held.append(rim)
+        number = len(self.held)
         round_one = rim.shape == "circle"
         if round_one:
             self.head.append(rim.boundary(number))
