@@ -52,7 +52,8 @@ class Flow {
       : complex_(complex),
         energy_(complex),
         targets_(energy::targets_of(complex)),
-        most_motion_(options.most_motion) {
+        most_motion_(options.most_motion),
+        short_volume_steps_(options.short_volume_steps) {
     const std::size_t count = complex.mesh.points.size();
     unknown_of_.assign(count, -1);
     for (const int v : energy_.vertices()) {
@@ -155,10 +156,12 @@ class Flow {
     for (int attempt = 0; attempt < 6; ++attempt) {
       if (holds_up(before, hold) && !too_far(old)) {
         tau_ = std::min(most_tau_, 2.0 * tau_);
+        volume_step_ = std::min(kVolumeStep, 2.0 * volume_step_);
         return true;
       }
       complex_.mesh.points = old;
       tau_ *= 0.25;
+      volume_step_ *= short_volume_steps_ ? 0.5 : 1.0;
     }
     return false;
   }
@@ -353,7 +356,7 @@ class Flow {
     const VectorX now = energy_.volumes(complex_.mesh.points);
     for (Eigen::Index k = 0; k < held; ++k) {
       const double target = *targets_.bodies[held_[k]].volume;
-      const double most = kVolumeStep * std::abs(target);
+      const double most = volume_step_ * std::abs(target);
       goal[k] = now[held_[k]] + std::clamp(target - now[held_[k]], -most, most);
     }
     const auto missing = [&](const Points& at) {
@@ -405,6 +408,8 @@ class Flow {
   VectorX stiffness_;  // per mover [force/length]
   std::optional<SymmetricFactor> factor_;
   double most_motion_ = 0.0;
+  bool short_volume_steps_ = false;
+  double volume_step_ = kVolumeStep;
   double tau_ = 0.0;
   double most_tau_ = 0.0;
 };

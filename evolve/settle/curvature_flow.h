@@ -15,6 +15,8 @@ struct FlowOptions {
   double energy_change = 1e-4;  // stop: relative change of energy per step,
                                 // once places where lines meet are at rest too
   double most_motion = 0.0;     // of a vertex per step [length]; 0: no bound
+  bool short_volume_steps = false;  // a step that fails is tried again with
+                                    // less of the volume's way, too
   /// Asked after every step; true stops: the film tears.
   std::function<bool(const energy::FilmEnergy&, const Points&)> torn = {};
   Monitor* monitor = nullptr;

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/math/expression.h"
 #include "core/timer.h"
+#include "evolve/films/nesting.h"
 #include "evolve/films/rim_grading.h"
 #include "evolve/groom/bend_midpoints.h"
 #include "evolve/groom/flip_average.h"
@@ -15,6 +18,7 @@
 #include "evolve/groom/remesh.h"
 #include "evolve/groom/rough_films.h"
 #include "evolve/settle/bring_near.h"
+#include "evolve/settle/bring_near_gently.h"
 #include "evolve/settle/contacts.h"
 #include "evolve/settle/neck.h"
 #include "evolve/settle/nested_newton.h"
@@ -70,14 +74,11 @@ std::string bring_near_by_levels(films::FilmComplex& complex,
                                  const FindOptions& options, int levels,
                                  int& steps) {
   for (int level = levels; level >= 0; --level) {
-    std::optional<double> edge;
-    if (options.edge) {
-      edge = *options.edge * std::exp2(level);
-      if (level < levels) {
-        complex = groom::refine(complex).complex;
-      }
-      remesh(complex, *edge);
+    const double edge = *options.edge * std::exp2(level);
+    if (level < levels) {
+      complex = groom::refine(complex).complex;
     }
+    remesh(complex, edge);
     std::string reason = bring_near(complex, edge, options.max_rounds, steps,
                                     {.monitor = options.settle.monitor});
     if (!reason.empty()) {
@@ -328,12 +329,81 @@ void check_junctions(const std::optional<groom::UnstableJunction>& junction,
   state.failure = Failure{FailureKind::FilmUnstable, state.report.verdict};
 }
 
+/// The refinements that are `left`, each from the settled film before it.
+FilmState settle_nested(films::FilmComplex& complex, FilmState state, int left,
+                        const FindOptions& options, int& steps) {
+  // Refinement keeps junctions: looked for while they are few.
+  const auto junction = groom::unstable_junction(complex);
+  // Nested iteration: each finer level starts from the settled one, with the
+  // chain as its multigrid.
+  Chain chain;
+  if (left > 0) {
+    chain.add(complex, {});
+    chain.measure_neck(complex);
+  }
+  for (; left > 0 && is_settled(state); --left) {
+    state = settle_finer(chain, complex, std::move(state), options, left == 1,
+                         steps);
+  }
+  check_junctions(junction, state);
+  return state;
+}
+
+bool crosses_itself(const films::FilmComplex& complex) {
+  std::vector<int> liquid;
+  for (std::size_t s = 0; s < complex.surfaces.size(); ++s) {
+    if (complex.surfaces[s].liquid) {
+      liquid.push_back(static_cast<int>(s));
+    }
+  }
+  return films::check_nesting(complex.mesh, liquid).crossing_pairs > 0;
+}
+
+/// Is it worth a second try? Not where the film was found to grow or to be a
+/// saddle, nor where that takes long; few facets rest where there is no film.
+bool may_try_again(const films::FilmComplex& raw, const FindOptions& options,
+                   const FilmState& state, bool grows) {
+  const std::size_t facets = raw.mesh.facets.size();
+  return !is_settled(state) && !grows &&
+         state.failure->kind != FailureKind::FilmUnstable &&
+         facets <= kDirect && facets << (2 * options.refinements) >= kGroomed;
+}
+
+/// Once more from the raw start, where the usual way found no film; none where
+/// this way finds none either, or one that crosses itself.
+std::optional<FilmState> find_gently(films::FilmComplex& complex,
+                                     const FindOptions& options, int& steps) {
+  std::optional<FilmState> found;
+  const auto find = [&] {
+    const int left = bring_near_gently(complex,
+                                       {.refinements = options.refinements,
+                                        .most_facets = kGroomed,
+                                        .monitor = options.settle.monitor},
+                                       steps);
+    FilmState state = settle_with_contacts(complex, 0.0, options.settle, steps);
+    if (is_settled(state)) {
+      state = settle_and_polish(complex, options, steps);
+      state = settle_nested(complex, std::move(state), left, options, steps);
+    }
+    if (!state.failure && !crosses_itself(complex)) {
+      found = std::move(state);
+    }
+  };
+  try {
+    what_prevents(find);
+  } catch (const ExpressionError&) {
+    // where a formula has no value there is no film
+  }
+  return found;
+}
+
 /// Nested refinements of a start: groomed and settled while it is coarse.
 FilmState find_nested(films::FilmComplex& complex, const FindOptions& options,
                       int& steps) {
   const films::FilmComplex raw = complex;
   FilmState state;
   int left = 0;
+  bool grows = false;
   // Coarse facets may tear a film that exists: retry with the first flow one
   // refinement later each time, while that is affordable.
   for (const int blind : {0, 1, 2, 3}) {
@@ -348,6 +418,7 @@ FilmState find_nested(films::FilmComplex& complex, const FindOptions& options,
     FilmState found = reason.empty()
                           ? settle_and_polish(attempt, options, steps)
                           : given_up(attempt, reason, steps);
+    grows = grows || reason == kFilmGrows;
     if (blind == 0 || is_settled(found)) {
       state = std::move(found);
       complex = std::move(attempt);
@@ -357,20 +428,15 @@ FilmState find_nested(films::FilmComplex& complex, const FindOptions& options,
       break;
     }
   }
-  // Refinement keeps junctions: looked for while they are few.
-  const auto junction = groom::unstable_junction(complex);
-  // Nested iteration: each finer level starts from the settled one, with the
-  // chain as its multigrid.
-  Chain chain;
-  chain.add(complex, {});
-  if (left > 0) {
-    chain.measure_neck(complex);
+  state = settle_nested(complex, std::move(state), left, options, steps);
+  if (!may_try_again(raw, options, state, grows)) {
+    return state;
   }
-  for (; left > 0 && is_settled(state); --left) {
-    state = settle_finer(chain, complex, std::move(state), options, left == 1,
-                         steps);
+  films::FilmComplex again = raw;
+  if (std::optional<FilmState> found = find_gently(again, options, steps)) {
+    complex = std::move(again);
+    return *std::move(found);
   }
-  check_junctions(junction, state);
   return state;
 }
 
@@ -389,13 +455,13 @@ FilmState find_equilibrium(films::FilmComplex& complex,
                            const FindOptions& options) {
   const Timer timer;
   int steps = 0;
-  if (!options.edge && options.refinements > 0) {
+  if (!options.edge) {
     FilmState state = find_nested(complex, options, steps);
     state.report.iterations = steps;
     state.report.seconds = timer.seconds();
     return state;
   }
-  const int levels = options.edge ? options.halvings : 0;
+  const int levels = options.halvings;
   films::FilmComplex raw = complex;
   std::string reason = bring_near_by_levels(complex, options, levels, steps);
   if (!reason.empty() && levels > 0) {

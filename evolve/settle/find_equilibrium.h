@@ -22,10 +22,12 @@ void require_motion(const films::FilmComplex& complex);
 
 /// Coarse to fine: curvature flow with remeshing until the film is near rest
 /// at its volumes, nested refinement, remeshing to the next edge, and Newton
-/// along current normals at the end. `complex` becomes the settled film. The
-/// state's failure tells when there is none: FilmPinched, FilmUnstable,
-/// FilmNotFound, in a bounded number of steps. Throws InvalidInput when the
-/// edge is so long that no vertex is free, and Interrupted.
+/// along current normals at the end. A film that this does not find is looked
+/// for once more, from the fat side by short steps, where no edge is asked for
+/// and 1500 facets or more are. `complex` becomes the settled film. The state's
+/// failure tells when there is none: FilmPinched, FilmUnstable, FilmNotFound,
+/// in a bounded number of steps. Throws InvalidInput when the edge is so long
+/// that no vertex is free, and Interrupted.
 FilmState find_equilibrium(films::FilmComplex& complex,
                            const FindOptions& options);
 
