@@ -87,12 +87,12 @@ class FilmTermBuilder {
       const auto body = static_cast<int>(b);
       const double density = complex_.bodies[b].density;
       if (density != 0.0 && !complex_.gravity.isZero(0.0)) {
-        add(flux_term(weight_field(density, complex_.gravity)),
+        add(flux_term(weight_field(density, complex_.gravity), 2),
             facets_of_body(body, 1.0), -1);
       }
       if (complex_.volume_rule == films::VolumeRule::Column &&
           !closed_by_facets(complex_, body)) {
-        add(flux_term(column_field), facets_of_body(body, 1.0), body);
+        add(flux_term(column_field, 1), facets_of_body(body, 1.0), body);
       }
     }
   }
@@ -173,7 +173,8 @@ class FilmTermBuilder {
               quantity,
               flux_term(complex_.volume_rule == films::VolumeRule::Column
                             ? FieldFunction(column_field)
-                            : FieldFunction(cone_field)),
+                            : FieldFunction(cone_field),
+                        1),
               factor, functional, number);
           break;
         case films::FilmQuantity::Kind::BodyScalarIntegral:

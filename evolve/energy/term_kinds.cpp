@@ -26,18 +26,31 @@ std::vector<GaussPoint> edge_rule(int points) {
 /// Integral of F . n over facets.
 class FluxTerm : public FilmTerm {
  public:
-  explicit FluxTerm(FieldFunction field) : field_(std::move(field)) {}
+  FluxTerm(FieldFunction field, std::span<const QuadraturePoint> rule)
+      : field_(std::move(field)), rule_(rule) {}
 
   FacetJet jet(const Element& element, const std::array<Vec3, 3>& c,
                JetOrder order, Numbers /*numbers*/) const override {
     FacetJet sum;
-    add_flux(facet_rule(), element.sign, c, order, field_, sum);
+    add_flux(rule_, element.sign, c, order, field_, sum);
     return sum;
   }
 
  private:
   FieldFunction field_;
+  std::span<const QuadraturePoint> rule_;
 };
+
+/// The least points that are exact for polynomials of a degree.
+std::span<const QuadraturePoint> rule_of(int degree) {
+  if (degree <= 1) {
+    return middle_rule();
+  }
+  if (degree == 2) {
+    return three_points();
+  }
+  return facet_rule();
+}
 
 /// What a facet counts for and its derivative by the corners.
 struct GrowingFacet {
@@ -404,8 +417,8 @@ class GapTerm : public FilmTerm {
 
 }  // namespace
 
-std::unique_ptr<FilmTerm> flux_term(FieldFunction field) {
-  return std::make_unique<FluxTerm>(std::move(field));
+std::unique_ptr<FilmTerm> flux_term(FieldFunction field, int degree) {
+  return std::make_unique<FluxTerm>(std::move(field), rule_of(degree));
 }
 
 std::unique_ptr<FilmTerm> scalar_term(PlaceField scalar, int spheroids) {

@@ -7,8 +7,9 @@
 
 namespace meniscus::energy {
 
-/// Integral of F . n over facets.
-std::unique_ptr<FilmTerm> flux_term(FieldFunction field);
+/// Integral of F . n over facets; exact for polynomials of `degree`, at most 5:
+/// the fewer points, the faster.
+std::unique_ptr<FilmTerm> flux_term(FieldFunction field, int degree = 5);
 
 /// Integral of a field over facets, whose areas count by so many spheroids
 /// (evolve/energy/facet_size.h). Their numbers follow the field's.
