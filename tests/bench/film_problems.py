@@ -174,32 +174,56 @@ def line_to_rim(path):
                 for a in line for b in held), default=None)
 
 
+def asked(text, bodies):
+    """The text of a film's datafile with the volumes and pressures of others."""
+    head, tail = text.split("\nbodies", 1)
+    held = iter(held for _, held in bodies)
+    return head + "\nbodies" + re.sub(r"(volume|pressure) \S+",
+                                      lambda _: next(held), tail)
+
+
 def limit_of(program, film, folder, levels):
-    """Where the problem, eased step by step, is a film's: a sentence. At a fold
-    the square of the lowest eigenvalue is linear in what is asked."""
-    def eigenvalue(by):
-        (folder / "start.fe").write_text(changed(film, by).text())
-        own = by_program(program, folder, levels)
-        return own["eigenvalue"] if own["settled"] else None
+    """Where the problem, eased until its raw start settles, loses its film on
+    the way back, each film from the one before: a sentence. At a fold the square
+    of the lowest eigenvalue is linear in what is asked."""
     steps = [sign * STEP * k for k in range(1, round(FURTHEST / STEP) + 1)
              for sign in (1, -1) if sign * STEP * k > LEAST - 1]
-    good = next((by for by in steps if eigenvalue(by) is not None), None)
-    if good is None:
+    for by in steps:
+        (folder / "start.fe").write_text(changed(film, by).text())
+        own = by_program(program, folder, levels)
+        if own["settled"]:
+            break
+    else:
         return f"no film within {FURTHEST:g} of it"
-    bad = good - math.copysign(STEP, good)
-    for _ in range(HALVINGS):
-        middle = 0.5 * (good + bad)
-        good, bad = (good, middle) if eigenvalue(middle) is None \
-            else (middle, bad)
-    further = good + math.copysign(0.5 * STEP, good)
-    far, near = eigenvalue(further), eigenvalue(good)
-    said = f"settles at {good:+.4f}, not at {bad:+.4f}; "
-    if far is not None and far > near:
-        fold = good - near ** 2 * (further - good) / (far ** 2 - near ** 2)
-        if fold * good > 0:
+    written = folder / "out" / "film.fe"
+    met = [(by, own["eigenvalue"])]
+    text, step = written.read_text(), math.copysign(STEP, by)
+    ends = line_to_rim(written)
+    while abs(step) > STEP * 0.5 ** HALVINGS and abs(met[-1][0]) > 1e-9:
+        by = met[-1][0] - step
+        by = by if by * step > 0 else 0.0
+        (folder / "next.fe").write_text(asked(text, changed(film, by).bodies))
+        own = by_program(program, folder, 0, "next.fe")
+        if own["settled"]:
+            met.append((by, own["eigenvalue"]))
+            text, ends = written.read_text(), line_to_rim(written)
+        else:
+            step *= 0.5
+    if len(met) == 1:  # a second one, further out
+        by = met[0][0] + 0.25 * math.copysign(STEP, met[0][0])
+        (folder / "next.fe").write_text(asked(text, changed(film, by).bodies))
+        own = by_program(program, folder, 0, "next.fe")
+        met[:0] = [(by, own["eigenvalue"])] if own["settled"] else []
+    last, near = met[-1]
+    if abs(last) <= 1e-9:
+        return "NOT SHOWN: it stands, and neither settles its raw start"
+    said = f"stands from {met[0][0]:+.2f} to {last:+.4f}, "
+    if len(met) > 1 and met[-2][1] > near:
+        before, far = met[-2]
+        fold = last - near ** 2 * (before - last) / (far ** 2 - near ** 2)
+        if fold * last > 0:
             return (f"{said}lowest eigenvalue {far:.3g}, {near:.3g}, "
                     f"0 at {fold:+.4f}: beyond the fold")
-    ends = line_to_rim(folder / "out" / "film.fe")
     if ends is not None and ends < LINE_ENDS:
         return (f"{said}its line is {ends:.2g} edges off the rim there: beyond "
                 "where the line meets it")
