@@ -19,6 +19,7 @@ import film_starts  # noqa: E402
 from film_starts import add, cross, dot  # noqa: E402
 
 KINDS = ("tube", "branch", "strut", "pressed", "bad")  # one body, held rims
+COARSE = 4000  # facets
 ALIKE = 5e-3  # of the energies: meshes differ, films do not
 REST = """
 [materials.any]
@@ -91,7 +92,12 @@ def case_text(film, facets):
     text += ("\n[bodies.liquid]\nenclosed_by = ["
              + ", ".join(f'"{n}"' for n in ["skin"] + caps)
              + f']\nmaterial = "any"\n{held[0]} = {held[1]}\n' + REST)
-    return text + f"\n[resolution]\nfea = {edge:.6g}\nfilm = {edge:.6g}\n"
+    # As parts do: a mesh for analysis, the film nested in it.
+    halvings = 0
+    while facets > COARSE * 4 ** halvings:
+        halvings += 1
+    return text + (f"\n[resolution]\nfea = {edge * 2 ** halvings:.6g}\n"
+                   f"film = {edge:.6g}\n")
 
 
 def by_program(program, folder):
