@@ -42,7 +42,7 @@ class FluxTerm : public FilmTerm {
 };
 
 /// The least points that are exact for polynomials of a degree.
-std::span<const QuadraturePoint> rule_of(int degree) {
+std::span<const QuadraturePoint> points_for(int degree) {
   if (degree <= 1) {
     return middle_rule();
   }
@@ -418,7 +418,7 @@ class GapTerm : public FilmTerm {
 }  // namespace
 
 std::unique_ptr<FilmTerm> flux_term(FieldFunction field, int degree) {
-  return std::make_unique<FluxTerm>(std::move(field), rule_of(degree));
+  return std::make_unique<FluxTerm>(std::move(field), points_for(degree));
 }
 
 std::unique_ptr<FilmTerm> scalar_term(PlaceField scalar, int spheroids) {

@@ -221,7 +221,7 @@ def limit_of(program, film, folder, levels):
     if len(met) > 1 and met[-2][1] > near:
         before, far = met[-2]
         fold = last - near ** 2 * (before - last) / (far ** 2 - near ** 2)
-        if fold * last > 0:
+        if fold * last > 0 and abs(fold - last) < STEP:
             return (f"{said}lowest eigenvalue {far:.3g}, {near:.3g}, "
                     f"0 at {fold:+.4f}: beyond the fold")
     if ends is not None and ends < LINE_ENDS:
