@@ -235,6 +235,10 @@ Expression::Rate Expression::transpose(std::span<const double> values,
   return {result.value, result.rate};
 }
 
+int Expression::bare_name() const {
+  return code_.size() == 1 && code_[0].operation == Name ? code_[0].index : -1;
+}
+
 bool Expression::is_constant() const {
   return std::none_of(code_.begin(), code_.end(), [](const Instruction& at) {
     return at.operation == Name;

@@ -80,6 +80,8 @@ class Expression {
   /// Positions of the names that appear, ascending.
   std::vector<int> names_used() const;
   bool is_constant() const;
+  /// The position of the name that is all of it; -1: it is more, or none.
+  int bare_name() const;
 
  private:
   friend class ExpressionParser;

@@ -100,6 +100,10 @@ double CaseValues::evaluate(const Quantity& quantity) const {
   if (!are_rates()) {
     return quantity.expression.evaluate(values_);
   }
+  // Coefficients are names of their own, as many as variables.
+  if (const int name = quantity.expression.bare_name(); name >= 0) {
+    return rate_of(duals_[static_cast<std::size_t>(name)]);
+  }
   return rate_of(quantity.expression.evaluate(duals_));
 }
 

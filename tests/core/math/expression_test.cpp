@@ -48,6 +48,15 @@ TEST(Expression, KeepsThePrecedenceOfArithmetic) {
   EXPECT_EQ(value("a != 2"), 0.0);
 }
 
+TEST(Expression, KnowsTheNameThatIsAllOfIt) {
+  const std::vector<std::string> names = {"a", "b"};
+  EXPECT_EQ(Expression::parse("b", names).bare_name(), 1);
+  EXPECT_EQ(Expression::parse("(a)", names).bare_name(), 0);
+  for (const char* more : {"-b", "b + 0", "2", "sin(a)"}) {
+    EXPECT_EQ(Expression::parse(more, names).bare_name(), -1) << more;
+  }
+}
+
 TEST(Expression, PowersOfZeroHaveDerivativesWhereTheyAre) {
   const Expression f = Expression::parse("a^b", kNames);
   const auto at = [&](double b) {
