@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <set>
@@ -243,7 +244,7 @@ class Coordinates {
           "{} make no tube from curve '{}' to '{}': no angle goes around",
           where_, first.name, second.name));
     }
-    turns *= gain;
+    turns *= std::copysign(1.0, gain);
     const auto [before, after, share] = start_of(first, splines.zero);
     const double start =
         turns[before] + share * wrapped(turns[after] - turns[before]);
@@ -286,7 +287,7 @@ class Coordinates {
     // The rim passes the half plane of zero where it goes over to the side of
     // `across`; where several times, the farthest counts.
     Start result;
-    double farthest = -1.0;
+    double farthest = -std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < loop.size(); ++k) {
       const double from = across.dot(mesh_.points[loop[k]] - middle);
       const double to = across.dot(next(k));

@@ -6,8 +6,6 @@ film for stable that the program refuses, or finds with another energy.
 Use: film_cases.py PROGRAM [--kinds tube,bad] [--count 20] [--first 0]
      [--facets 2000] [--limit 60] [--seed 1] [--keep FOLDER], from anywhere; or
      film_cases.py PROGRAM --settles tube_0,bad_3: these, without Evolver."""
-import argparse
-import json
 import math
 import pathlib
 import sys
@@ -100,27 +98,11 @@ def case_text(film, facets):
                    f"film = {edge:.6g}\n")
 
 
-def by_program(program, folder):
-    output, seconds = film_problems.seconds_of(
-        [program, "evolve", "case.toml", "--quiet", "--no-pictures", "--out",
-         "out"], folder, film_problems.OUR_LIMIT)
-    result = {"settled": False, "energy": None, "seconds": seconds,
-              "why": "time", "facets": 0}
-    report = folder / "out" / "film.json"
-    if output is None or not report.exists():
-        result["why"] = output.strip() if output else "time"
-        return result
-    found = json.loads(report.read_text())
-    result.update(energy=found["energy"], facets=found["facets"],
-                  why=found["verdict"], settled=found["verdict"] == "stable")
-    return result
-
-
 def compare(options, name, folder):
     kind, number = name.split("_")
     film = film_starts.problem(kind, int(number), options.seed)
     (folder / "case.toml").write_text(case_text(film, options.facets))
-    own = by_program(options.program, folder)
+    own = film_problems.evolved(options.program, folder, "case.toml")
     row = {"name": name, "own": own, "peer": None, "apart": None}
     said = (f"{name:12} {own['facets']:6} facets  "
             f"{'settled' if own['settled'] else 'refused':8}"
@@ -145,17 +127,7 @@ def compare(options, name, folder):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("program", type=lambda p: str(pathlib.Path(p).resolve()))
-    parser.add_argument("--kinds", default=",".join(KINDS))
-    parser.add_argument("--count", type=int, default=20)
-    parser.add_argument("--first", type=int, default=0)
-    parser.add_argument("--facets", type=int, default=2000)
-    parser.add_argument("--limit", type=float, default=60)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--keep", help="leave the cases here")
-    parser.add_argument("--settles", help="names as tube_2, by the program alone")
-    options = parser.parse_args()
+    options = film_problems.options_of(__doc__, KINDS).parse_args()
     names = options.settles.split(",") if options.settles else [
         f"{kind}_{number}" for kind in options.kinds.split(",")
         for number in range(options.first, options.first + options.count)]

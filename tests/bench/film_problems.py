@@ -102,10 +102,15 @@ def by_evolver(film, folder, levels, limit):
 
 
 def by_program(program, folder, levels, start="start.fe"):
+    return evolved(program, folder, start, "--refine", str(levels))
+
+
+def evolved(program, folder, *what):
+    """What the program makes of a datafile or case: as of by_evolver()."""
     shutil.rmtree(folder / "out", ignore_errors=True)
     output, seconds = seconds_of(
-        [program, "evolve", start, "--refine", str(levels), "--quiet",
-         "--no-pictures", "--out", "out"], folder, OUR_LIMIT)
+        [program, "evolve", *what, "--quiet", "--no-pictures", "--out", "out"],
+        folder, OUR_LIMIT)
     result = {"settled": False, "energy": None, "seconds": seconds,
               "why": "time", "facets": 0}
     report = folder / "out" / "film.json"
@@ -306,19 +311,24 @@ def settles(options, folder):
     return missed
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__)
+def options_of(description, kinds):
+    parser = argparse.ArgumentParser(description=description)
     parser.add_argument("program", type=lambda p: str(pathlib.Path(p).resolve()))
-    parser.add_argument("--kinds", default=",".join(film_starts.KINDS))
+    parser.add_argument("--kinds", default=",".join(kinds))
     parser.add_argument("--count", type=int, default=20)
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--facets", type=int, default=2000)
     parser.add_argument("--limit", type=float, default=60)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--keep", help="leave the datafiles here")
+    parser.add_argument("--keep", help="leave the problems here")
+    parser.add_argument("--settles", help="names as tube_2, by the program alone")
+    return parser
+
+
+def main():
+    parser = options_of(__doc__, film_starts.KINDS)
     parser.add_argument("--limits", action="store_true",
                         help="of what neither settles")
-    parser.add_argument("--settles", help="names as tube_2, by the program alone")
     options = parser.parse_args()
     if options.settles:
         with tempfile.TemporaryDirectory(prefix="meniscus film ") as name:
