@@ -66,9 +66,8 @@ struct Case {
   /// Designs that a study's models were frozen at before the one at `initial`,
   /// in order: its film begins from theirs (pipeline/store/refreeze.h).
   std::vector<VectorX> earlier_freezes;
-  std::string start;  // results folder of an earlier run, as the case names it
-  /// Where that run's films stood, in order, before any of these: values of the
-  /// design variables, then of the parameters; NaN: this case's own.
+  /// Where films begin before any of these, in order: values of the design
+  /// variables, then of the parameters; NaN: this case's own.
   std::vector<VectorX> way;
 };
 

@@ -92,9 +92,8 @@ void log_lost(const case_data::Case& input,
   if (!input.way.empty() && options.monitor != nullptr) {
     options.monitor->log(
         Severity::Warning,
-        fmt::format("the film of '{}' does not follow to this design, nor on "
-                    "the way there: it starts from first facets",
-                    input.start));
+        "the film does not follow from where 'start' has it to this design, "
+        "nor on the way there: it starts from first facets");
   }
 }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <iterator>
+#include <limits>
 #include <map>
 #include <regex>
 #include <set>
@@ -550,6 +552,107 @@ void warn_of_unused(CaseContext& context, const toml::table& root,
   }
 }
 
+namespace {
+
+/// The values of an earlier run, in order. Throws Error.
+std::vector<VectorX> values_of_run(const CaseContext& context,
+                                   const std::string& folder,
+                                   case_data::Case& result) {
+  files::EarlierRun run =
+      files::read_earlier_run(earlier_run_text(folder, result), context.names);
+  if (run.units != result.units.name) {
+    throw InvalidInput(
+        fmt::format("its numbers are in {}, those of this "
+                    "case in {}",
+                    run.units, result.units.name));
+  }
+  if (!std::any_of(run.values.back().begin(), run.values.back().end(),
+                   [](double value) { return std::isfinite(value); })) {
+    throw InvalidInput(
+        "it has no design variable and no parameter of this case, by which "
+        "films could be led from there");
+  }
+  return std::move(run.values);
+}
+
+/// What a name of a table `start` stands for.
+struct Target {
+  std::size_t first = 0;  // of the names
+  std::size_t count = 1;
+  std::span<const int> shape;
+};
+
+/// Null with a problem noted, also for a parameter that design variables move.
+std::optional<Target> target_named(CaseContext& context,
+                                   const std::string& name,
+                                   case_data::SourceLine line,
+                                   const case_data::Case& result) {
+  std::vector<std::string> known;
+  for (const case_data::DesignVector& vector : result.vectors) {
+    if (vector.name == name) {
+      return Target{vector.first, vector.size(), vector.shape};
+    }
+    known.push_back(vector.name);
+  }
+  const auto& names = context.names;
+  const auto at = std::find(names.begin(), names.end(), name);
+  if (at == names.end()) {
+    std::copy_if(names.begin(), names.end(), std::back_inserter(known),
+                 [](const std::string& text) {
+                   return text.find('[') == std::string::npos;
+                 });
+    context.problems.add(
+        line, fmt::format("start has '{}', which is no design variable and no "
+                          "parameter{}",
+                          name, case_data::advice(name, known)));
+    return std::nullopt;
+  }
+  const auto k = static_cast<std::size_t>(at - names.begin());
+  if (k >= result.design.size() && !context.constants[k]) {
+    context.problems.add(
+        line, fmt::format("start.{}: design variables move this parameter; "
+                          "name them instead",
+                          name));
+    return std::nullopt;
+  }
+  return Target{.first = k};
+}
+
+/// One value per name, NaN where the table has none; problems are those of
+/// `context`.
+VectorX values_of_table(CaseContext& context, const toml::table& table,
+                        const case_data::Case& result) {
+  VectorX values = VectorX::Constant(std::ssize(context.names),
+                                     std::numeric_limits<double>::quiet_NaN());
+  for (const auto& [key, node] : table) {
+    const std::string name(key.str());
+    const std::optional<Target> target =
+        target_named(context, name, context.line_of(node), result);
+    if (!target) {
+      continue;
+    }
+    const std::vector<Given> given =
+        read_elements(context, node, "start." + name, target->shape);
+    for (std::size_t k = 0; k < given.size(); ++k) {
+      const Measure& measure = given[k].constant.measure;
+      const Measure& wanted = context.measures[target->first + k];
+      if (measure.is_known() && wanted.is_known() &&
+          !(measure.powers == wanted.powers)) {
+        context.problems.add(given[k].line,
+                             fmt::format("start.{} is {}, and '{}' {}", name,
+                                         described(measure.powers), name,
+                                         described(wanted.powers)));
+        break;
+      }
+      values[static_cast<Eigen::Index>(target->first + k)] =
+          given[k].constant.value;
+    }
+  }
+  return values;
+}
+
+}  // namespace
+
 void read_start(CaseContext& context, const toml::table& root,
                 case_data::Case& result) {
   const toml::node* node = root.get("start");
@@ -557,39 +660,28 @@ void read_start(CaseContext& context, const toml::table& root,
     return;
   }
   const case_data::SourceLine line = context.line_of(*node);
-  const auto* folder = node->as_string();
-  if (folder == nullptr) {
-    context.problems.add(line, fmt::format("start is {}; expected the results "
-                                           "folder of an earlier run in quotes",
-                                           described(*node)));
-    return;
-  }
-  result.start = folder->get();
-  try {
-    const files::EarlierRun run = files::read_earlier_run(
-        earlier_run_text(result.start, result), context.names);
-    if (run.units != result.units.name) {
-      throw InvalidInput(
-          fmt::format("its numbers are in {}, those of this "
-                      "case in {}",
-                      run.units, result.units.name));
+  if (const auto* folder = node->as_string()) {
+    try {
+      result.way = values_of_run(context, folder->get(), result);
+    } catch (const Error& error) {
+      context.problems.add(
+          line, fmt::format("start = \"{}\": {}", folder->get(), error.what()));
     }
-    if (!std::any_of(run.values.back().begin(), run.values.back().end(),
-                     [](double value) { return std::isfinite(value); })) {
-      throw InvalidInput(
-          "it has no design variable and no parameter of this case, by which "
-          "films could be led from there");
-    }
-    result.way = run.values;
-    for (VectorX& values : result.way) {
-      for (std::size_t k = 0; k < result.design.size(); ++k) {
-        double& value = values[static_cast<Eigen::Index>(k)];
-        value = std::isfinite(value) ? value : result.design[k].initial;
-      }
-    }
-  } catch (const Error& error) {
+  } else if (const auto* table = node->as_table();
+             table != nullptr && !table->empty()) {
+    result.way = {values_of_table(context, *table, result)};
+  } else {
     context.problems.add(
-        line, fmt::format("start = \"{}\": {}", result.start, error.what()));
+        line, fmt::format("start is {}; expected the results folder of an "
+                          "earlier run in quotes, or values by name: "
+                          "{{ width = 20 }}",
+                          table == nullptr ? described(*node) : "empty"));
+  }
+  for (VectorX& values : result.way) {
+    for (std::size_t k = 0; k < result.design.size(); ++k) {
+      double& value = values[static_cast<Eigen::Index>(k)];
+      value = std::isfinite(value) ? value : result.design[k].initial;
+    }
   }
 }
 

@@ -19,7 +19,8 @@ void read_tables(const toml::table& root, const OverriddenNodes& overridden,
 void read_names(CaseContext& context, const toml::table& root,
                 case_data::Case& result);
 
-/// The earlier run that films begin from, once names and units are known.
+/// Where films begin, an earlier run or values by name, once names and units
+/// are known.
 void read_start(CaseContext& context, const toml::table& root,
                 case_data::Case& result);
 

@@ -24,9 +24,10 @@ std::vector<TableSpec> make_tables() {
         {"units", K::Choice, D::None, true,
          "consistent unit system of every number in the file",
          "mm-N-MPa|m-N-Pa|in-lbf-psi"},
-        {"start", K::Text, D::None, false,
-         "results folder of an earlier run, beside the case or in the working "
-         "folder: films begin where that run's stood"}}},
+        {"start", K::Start, std::nullopt, false,
+         "where films begin: the results folder of an earlier run, beside the "
+         "case or in the working folder, or values of design variables and "
+         "parameters by name"}}},
       {"parameters",
        false,
        N::Optional,

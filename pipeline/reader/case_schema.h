@@ -40,6 +40,7 @@ enum class KeyType {
   Constants,       // array of constants
   ConstantMap,     // inline table: response = constant, of its dimension
   IntegerMap,      // inline table: design variable = integer
+  Start,           // text, or inline table: design variable = elements
   Supports,        // array of inline tables: table "support"
   Loads,           // array of inline tables: table "load"
   Zones,           // array of inline tables: table "exclude"

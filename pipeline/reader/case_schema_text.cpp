@@ -67,6 +67,8 @@ const char* type_text(const KeySpec& key) {
     case K::ConstantMap:
     case K::IntegerMap:
       return "table";
+    case K::Start:
+      return "text or table";
     case K::Supports:
       return "supports";
     case K::Loads:
@@ -258,6 +260,9 @@ Json type_schema(const KeySpec& key) {
     case K::IntegerMap:
       return {{"type", "object"},
               {"additionalProperties", {{"type", "integer"}}}};
+    case K::Start:
+      return {{"type", {"string", "object"}},
+              {"additionalProperties", elements_schema()}};
     case K::Supports:
       return array(object_schema(case_table("support")), 1, 0);
     case K::Loads:

@@ -122,6 +122,57 @@ TEST_F(FilmWay, RefusesWhatIsNoRunOfSuchACase) {
   EXPECT_THAT(number.problems, ElementsAre(HasSubstr("start is 3; expected")));
 }
 
+// Values by name: what the table has not is the case's own.
+TEST(FilmWayTable, HasValuesByName) {
+  const std::string vector = changed(
+      strut(), "[design.foot]\n",
+      "[design.waist]\nshape = [2, 2]\ninitial = 1.0\nbounds = [0.0, 9.0]\n\n"
+      "[design.foot]\n");
+  const reader::CaseReading reading = reader::read_case_text(
+      "start = { length = \"6.6 cm\", waist = [[1, 2], [3, \"2 * 2\"]] }\n" +
+          vector,
+      "case.toml");
+  ASSERT_THAT(reading.problems, IsEmpty());
+  const case_data::Case& input = *reading.input;
+  ASSERT_THAT(input.way, SizeIs(1));
+  const VectorX& values = input.way[0];
+  EXPECT_THAT(std::vector<double>(values.begin(), values.end()),
+              ElementsAre(1.0, 2.0, 3.0, 4.0, 25.0, testing::IsNan(), 66.0));
+  EXPECT_THAT(input.files, IsEmpty());
+  const auto way = way_of(input);
+  ASSERT_THAT(way, SizeIs(2));
+  EXPECT_EQ(std::get<curves::Circle>(way[0].system.curves[1].shape).center.z(),
+            66.0);
+  EXPECT_EQ(std::get<curves::Circle>(way[1].system.curves[1].shape).center.z(),
+            60.0);
+}
+
+TEST(FilmWayTable, RefusesWhatHasNoSuchValue) {
+  const auto problems = [](const std::string& table,
+                           const std::string& text = strut()) {
+    return reader::read_case_text("start = " + table + "\n" + text, "case.toml")
+        .problems;
+  };
+  EXPECT_THAT(problems("{}"),
+              ElementsAre(HasSubstr("case.toml:1: start is empty; expected")));
+  EXPECT_THAT(problems("{ lenght = 6 }"),
+              ElementsAre(HasSubstr("start has 'lenght', which is no design "
+                                    "variable and no parameter; did you mean "
+                                    "'length'")));
+  EXPECT_THAT(problems("{ foot = [2, 3] }"),
+              ElementsAre(HasSubstr("start.foot")));
+  EXPECT_THAT(problems("{ load = \"foot\" }"),
+              ElementsAre(HasSubstr("start.load")));
+  EXPECT_THAT(
+      problems("{ length = \"2 kg\" }",
+               changed(strut(), "length = 60.0", "length = \"60 mm\"")),
+      ElementsAre(HasSubstr("start.length is a mass, and 'length' a length")));
+  EXPECT_THAT(
+      problems("{ length = 50 }",
+               changed(strut(), "length = 60.0", "length = \"foot + 35\"")),
+      ElementsAre(HasSubstr("start.length: design variables move this")));
+}
+
 /// Hears warnings.
 struct Listener : Monitor {
   void log(Severity severity, const std::string& message) override {
@@ -152,7 +203,6 @@ case_data::Case elbow(double angle) {
 /// An elbow whose film begins from that of a run at another angle.
 struct Start {
   Start(double angle, double of_run) : input(elbow(angle)) {
-    input.start = "easy";
     input.way = {Eigen::Vector3d(20.0, 1000.0, of_run)};
     inputs = case_data::evaluate(input, case_data::initial_design(input));
     options = {.edge = 8.0, .refinements = 0, .monitor = &listener};
@@ -194,7 +244,7 @@ TEST(FilmStart, SaysWhereAFilmDoesNotFollow) {
       case_films::freeze_films(input, inputs, options);
   EXPECT_FALSE(found.reference().failure);
   EXPECT_THAT(listener.warnings,
-              ElementsAre(HasSubstr("'easy' does not follow")));
+              ElementsAre(HasSubstr("does not follow from where 'start'")));
 }
 
 }  // namespace
