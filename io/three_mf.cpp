@@ -63,8 +63,14 @@ class ThreeMfWriter {
           model_);
     metadata();
     const std::vector<BodyFacets> bodies = facets_by_body(mesh_);
+    std::vector<Handle> objects(bodies.size());
     for (std::size_t b = 0; b < bodies.size(); ++b) {
-      add_body(bodies[b], one_line(body_name(options_.bodies, b)));
+      add_body(bodies[b], one_line(body_name(options_.bodies, b)), objects[b]);
+    }
+    if (objects.size() == 1) {
+      place(objects[0]);
+    } else {
+      place_together(objects);
     }
     check(NMR::lib3mf_model_setbuilduuidutf8(model_.get(), uuid().c_str()),
           model_);
@@ -101,7 +107,39 @@ class ThreeMfWriter {
         fmt::format("{}", fmt::join(options_.notes.lines, "; ")));
   }
 
-  void add_body(const BodyFacets& body, const std::string& name) {
+  void name(const Handle& object, const std::string& name) {
+    check(NMR::lib3mf_object_setnameutf8(object.get(), name.c_str()), object);
+    check(NMR::lib3mf_object_setuuidutf8(object.get(), uuid().c_str()), object);
+  }
+
+  /// As components of one object, since they belong together.
+  void place_together(const std::vector<Handle>& objects) {
+    Handle part;
+    check(NMR::lib3mf_model_addcomponentsobject(model_.get(), part.fill()),
+          model_);
+    name(part, one_line(options_.notes.title));
+    for (const Handle& object : objects) {
+      Handle component;
+      check(NMR::lib3mf_componentsobject_addcomponent(
+                part.get(), object.get(), nullptr, component.fill()),
+            part);
+      check(NMR::lib3mf_component_setuuidutf8(component.get(), uuid().c_str()),
+            component);
+    }
+    place(part);
+  }
+
+  /// On the build plate, as it stands.
+  void place(const Handle& object) {
+    Handle item;
+    check(NMR::lib3mf_model_addbuilditem(model_.get(), object.get(), nullptr,
+                                         item.fill()),
+          model_);
+    check(NMR::lib3mf_builditem_setuuidutf8(item.get(), uuid().c_str()), item);
+  }
+
+  void add_body(const BodyFacets& body, const std::string& body_name,
+                Handle& object) {
     std::vector<NMR::MODELMESHVERTEX> vertices;
     std::vector<NMR::MODELMESHTRIANGLE> triangles;
     std::map<int, DWORD> number;
@@ -122,20 +160,13 @@ class ThreeMfWriter {
         }
       }
     }
-    Handle object;
     check(NMR::lib3mf_model_addmeshobject(model_.get(), object.fill()), model_);
-    check(NMR::lib3mf_object_setnameutf8(object.get(), name.c_str()), object);
-    check(NMR::lib3mf_object_setuuidutf8(object.get(), uuid().c_str()), object);
+    name(object, body_name);
     check(
         NMR::lib3mf_meshobject_setgeometry(
             object.get(), vertices.data(), static_cast<DWORD>(vertices.size()),
             triangles.data(), static_cast<DWORD>(triangles.size())),
         object);
-    Handle item;
-    check(NMR::lib3mf_model_addbuilditem(model_.get(), object.get(), nullptr,
-                                         item.fill()),
-          model_);
-    check(NMR::lib3mf_builditem_setuuidutf8(item.get(), uuid().c_str()), item);
   }
 
   std::string written() const {

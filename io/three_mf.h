@@ -15,8 +15,9 @@ struct ThreeMfOptions {
   std::vector<std::string> bodies;  // names, one per body; empty: "body_1"...
 };
 
-/// An object of type model for each body, named and placed on the build plate
-/// as it stands; facets between two bodies are in both. Coordinates are 32-bit
+/// An object of type model for each body, named; several are components of one
+/// with the title for a name, which is what the build plate has, as it stands.
+/// Facets between two bodies are in both. Coordinates are 32-bit
 /// and written to six decimals: 1e-6 of the unit. Same input, same bytes.
 /// Throws InvalidInput (no facets, a bad point id, a coordinate that is not
 /// finite or at least 2^30 of the unit, a unit other than mm, m and in),

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""PrusaSlicer's command line on the 3MF of two brackets: does it find one manifold
-part of the film's volume, and does it slice? Not part of the tests: a large
-package. Use: slice_3mf.py PROGRAM, from anywhere."""
+"""PrusaSlicer's command line on the 3MF of two brackets: does it find each body
+manifold, in one piece, all together of the films' volume, and does it slice? Not
+part of the tests: a large package. Use: slice_3mf.py PROGRAM, from anywhere."""
 import json
 import pathlib
 import re
@@ -32,24 +32,32 @@ def check(program, case):
         part = folder / "part.3mf"
         call(program, "export", folder / "run", "--format", "3mf", "--out",
              part)
-        info = dict(re.findall(r"^(\w+) = +(\S+)$",
-                               call("prusa-slicer", "--info", part), re.M))
+        info = call("prusa-slicer", "--info", part)
+        bodies = {key: re.findall(rf"^{key} = +(\S+)$", info, re.M)
+                  for key in ("manifold", "number_of_parts", "volume",
+                              "number_of_facets", "min_z", "max_z")}
+        # Its command line puts each body on the plate by itself.
+        height = max(float(high) - float(low) for low, high in
+                     zip(bodies["min_z"], bodies["max_z"], strict=True))
         film = json.loads((folder / "run" / "result.json").read_text())["film"]
         held = sum(body["volume"] for body in film["bodies"].values())
-        off = float(info["volume"]) / held - 1
+        off = sum(map(float, bodies["volume"])) / held - 1
         call("prusa-slicer", "--export-gcode", "--layer-height", LAYER,
              "--bed-shape", "0x0,400x0,400x400,0x400", "--max-print-height",
              "400", "--support-material", "--output", folder / "part.gcode",
              part)
         gcode = (folder / "part.gcode").read_text()
         tops = {float(z) for z in re.findall(r"^;Z:([\d.]+)$", gcode, re.M)}
-        print(f"{case}: PrusaSlicer: manifold {info['manifold']}, parts "
-              f"{info['number_of_parts']}, facets {info['number_of_facets']}, "
-              f"height {info['size_z']} mm, volume off by {off:.1e}; sliced at "
-              f"{LAYER} mm, top layer at {max(tops):g} mm")
-        if (info["manifold"] != "yes" or info["number_of_parts"] != "1" or
-                abs(off) > VOLUME or
-                abs(max(tops) - float(info["size_z"])) > 2 * LAYER):
+        print(f"{case}: PrusaSlicer: {len(bodies['volume'])} bodies of "
+              f"{len(film['bodies'])}, facets "
+              f"{' '.join(bodies['number_of_facets'])}, "
+              f"the tallest {height:.6g} mm, "
+              f"volume off by {off:.1e}; sliced at {LAYER} mm, top layer at "
+              f"{max(tops):g} mm")
+        if (set(bodies["manifold"]) != {"yes"} or
+                set(bodies["number_of_parts"]) != {"1"} or
+                len(bodies["volume"]) != len(film["bodies"]) or
+                abs(off) > VOLUME or abs(max(tops) - height) > 2 * LAYER):
             sys.exit("PrusaSlicer finds another part")
 
 

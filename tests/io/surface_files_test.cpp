@@ -109,6 +109,7 @@ struct Read {
   std::vector<std::string> names;
   std::vector<SurfaceMesh> objects;
   bool closed = true;
+  int items = 0;  // on the build plate
 };
 
 Read read_3mf(const std::filesystem::path& path) {
@@ -153,6 +154,12 @@ Read read_3mf(const std::filesystem::path& path) {
     lib3mf_release(object);
   }
   lib3mf_release(objects);
+  PLib3MFModelBuildItemIterator* items = nullptr;
+  lib3mf_model_getbuilditems(model, &items);
+  while (lib3mf_builditemiterator_movenext(items, &more) == 0 && more != 0) {
+    ++result.items;
+  }
+  lib3mf_release(items);
   lib3mf_release(reader);
   lib3mf_release(model);
   return result;
@@ -171,6 +178,7 @@ TEST(ThreeMf, IsReadByItsLibraryWithUnitNamesAndVolume) {
     EXPECT_EQ(read.unit, number);
     EXPECT_EQ(read.names, std::vector<std::string>({"bäll"}));
     EXPECT_TRUE(read.closed);
+    EXPECT_EQ(read.items, 1);
     ASSERT_EQ(read.objects.size(), 1U);
     constexpr double kDecimals = 1e-6;  // six of them, at 25
     EXPECT_NEAR(enclosed_volume(read.objects[0]) / enclosed_volume(ball), 1.0,
@@ -178,6 +186,7 @@ TEST(ThreeMf, IsReadByItsLibraryWithUnitNamesAndVolume) {
   }
 }
 
+// Which slicers keep together: one item of all.
 TEST(ThreeMf, HasAClosedObjectForEachBody) {
   const TempFolder folder;
   io::write_3mf(folder / "a.3mf", two_cubes(),
@@ -185,6 +194,7 @@ TEST(ThreeMf, HasAClosedObjectForEachBody) {
   const Read read = read_3mf(folder / "a.3mf");
   EXPECT_EQ(read.names, std::vector<std::string>({"steel", "foam"}));
   EXPECT_TRUE(read.closed);
+  EXPECT_EQ(read.items, 1);
   for (const SurfaceMesh& object : read.objects) {
     EXPECT_EQ(object.points.size(), 8U);
     EXPECT_NEAR(enclosed_volume(object), 1.0, kRounding);

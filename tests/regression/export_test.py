@@ -270,8 +270,10 @@ class Export(ProgramTest):
             zipfile.ZipFile(self.file("3mf")).read("3D/3dmodel.model"))
         space = "{http://schemas.microsoft.com/3dmanufacturing/core/2015/02}"
         self.assertEqual(root.get("unit"), "millimeter")
-        parts = list(root.iter(space + "object"))
+        parts = [part for part in root.iter(space + "object")
+                 if part.find(space + "mesh") is not None]
         self.assertEqual([part.get("name") for part in parts], self.bodies)
+        self.assertEqual(len(list(root.iter(space + "item"))), 1)
         total = 0.0
         for part in parts:
             points = [[float(v.get(k)) for k in "xyz"]
