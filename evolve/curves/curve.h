@@ -91,6 +91,8 @@ struct Curve {
   CurveShape shape;
   double fineness = 1.0;  // it is cut into pieces of so much of the films'
                           // edge, in (0, 1]; models are frozen with it
+  /// Films only begin along it; their common line moves to where it balances.
+  bool free = false;
 };
 
 /// Throws InvalidInput, naming the curve and the value, for a shape that is no

@@ -55,10 +55,12 @@ Vec3 line_axis(const Vec3& t) {
   return Vec3::Unit(least);
 }
 
-/// Where two planes meet, the way along both is the same for all films.
+/// Where two planes meet, the way along both is the same for all films, and so
+/// are the two ways of a line's end within one plane.
 bool FilmSpace::runs_along_planes(int k, const Points& points) const {
   const Wall& wall = walls_[k];
-  return wall.curve < 0 && wall.level_sets.size() == 2 &&
+  const bool in_plane = wall.level_sets.size() == 1 && rank(walled_[k]) == 2;
+  return wall.curve < 0 && (wall.level_sets.size() == 2 || in_plane) &&
          std::all_of(
              wall.level_sets.begin(), wall.level_sets.end(), [&](int level) {
                return jet_at(level_sets_[level].formula, points[walled_[k]])

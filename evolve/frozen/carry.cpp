@@ -1,5 +1,9 @@
 #include "evolve/frozen/carry.h"
 
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
@@ -72,7 +76,8 @@ bool Carry::is_apex(const films::FilmComplex& reference, int facet, int v) {
 /// Vertices of a part that facets link to its rim; others, of parts that float,
 /// stay where they are. What caps and wetted faces have in common is of caps.
 std::vector<char> Carry::carried_vertices(const films::FilmComplex& reference,
-                                          Part part) {
+                                          Part part,
+                                          const std::vector<char>& given) {
   const films::VertexKind kind =
       part == Part::Films ? films::VertexKind::Free : films::VertexKind::InCap;
   UnionFind parts(reference.vertices.size());
@@ -97,7 +102,8 @@ std::vector<char> Carry::carried_vertices(const films::FilmComplex& reference,
   std::vector<char> result(parts.size(), 0);
   for (std::size_t v = 0; v < held.size(); ++v) {
     const bool elsewhere = part == Part::Wetted && of_caps[v] != 0;
-    const bool moves = reference.vertices[v].kind == kind && !elsewhere;
+    const bool moves =
+        reference.vertices[v].kind == kind && !elsewhere && given[v] == 0;
     result[v] = moves && (part == Part::Films || own[v] != 0) ? 1 : 0;
     if (!moves) {
       held[parts.root(static_cast<int>(v))] = 1;
@@ -171,10 +177,11 @@ Eigen::MatrixXd Carry::Extension::solve(const Eigen::MatrixXd& right) const {
 }
 
 Carry::Extension Carry::extend(const films::FilmComplex& reference, Part part,
+                               const std::vector<char>& given,
                                const std::vector<int>& order) {
   Extension extension;
   std::vector<int> unknown_of(reference.vertices.size(), -1);
-  const std::vector<char> carried = carried_vertices(reference, part);
+  const std::vector<char> carried = carried_vertices(reference, part, given);
   for (std::size_t v = 0; v < reference.vertices.size(); ++v) {
     if (carried[v] != 0) {
       unknown_of[v] = static_cast<int>(extension.vertices.size());
@@ -212,14 +219,29 @@ Carry::Extension Carry::extend(const films::FilmComplex& reference, Part part,
   return extension;
 }
 
-Carry::Carry(const films::FilmComplex& reference,
+Carry::Carry(const films::FilmComplex& reference, const std::vector<int>& lines,
              const std::vector<int>& film_order)
     : reference_(reference.mesh.points),
       stands_(reference.curves.size()),
       stands_on_curves_(reference.vertices.size(), 0),
-      films_(extend(reference, Part::Films, film_order)),
-      caps_(extend(reference, Part::Caps, {})),
-      wetted_(extend(reference, Part::Wetted, {})) {
+      given_(reference.vertices.size(), 0) {
+  const std::vector<char> none(reference.vertices.size(), 0);
+  films_ = extend(reference, Part::Films, none, film_order);
+  for (const int v : films_.vertices) {
+    given_[v] = 1;
+  }
+  std::copy_if(lines.begin(), lines.end(), std::back_inserter(lines_),
+               [&](int v) { return given_[v] != 0; });
+  given_ = none;
+  for (const int v : lines_) {
+    given_[v] = 1;
+  }
+  if (!lines_.empty()) {
+    over_lines_ = std::move(films_);
+    films_ = extend(reference, Part::Films, given_, {});
+  }
+  caps_ = extend(reference, Part::Caps, none, {});
+  wetted_ = extend(reference, Part::Wetted, none, {});
   std::vector<int> face(reference.vertices.size(), -1);
   for (std::size_t f = 0; f < reference.mesh.facets.size(); ++f) {
     for (const int v : reference.mesh.facets[f]) {
@@ -252,6 +274,7 @@ Carry::Carry(const films::FilmComplex& reference,
           (edge ? reference.solid_edges : reference.solid_faces)[vertex.curve]
               .frame);
     }
+    given_[v] = given_[v] != 0 || stands_on_curves_[v] != 0 ? 1 : 0;
   }
 }
 
@@ -325,32 +348,51 @@ void Carry::add_transposed(const Extension& extension, const Points& by_points,
   }
 }
 
-Points Carry::transpose(const Points& by_points) const {
+Points Carry::transpose_by(const Extension& films,
+                           const Points& by_points) const {
   Points result = by_points;
   add_transposed(wetted_, by_points, result);
   const Points by_rims = result;
-  add_transposed(films_, by_rims, result);
+  add_transposed(films, by_rims, result);
   add_transposed(caps_, by_rims, result);
+  const std::vector<char>& given =
+      &films == &films_ ? given_ : stands_on_curves_;
   for (std::size_t v = 0; v < reference_.size(); ++v) {
-    if (stands_on_curves_[v] == 0) {
+    if (given[v] == 0) {
       result[v].setZero();
     }
   }
   return result;
 }
 
-Points Carry::rates(const Points& rim_rates) const {
+Points Carry::transpose(const Points& by_points) const {
+  return transpose_by(films_, by_points);
+}
+
+Points Carry::transpose_over_lines(const Points& by_points) const {
+  return transpose_by(over_lines_, by_points);
+}
+
+Points Carry::rates_by(const Extension& films, const Points& rim_rates) const {
   Points result = rim_rates;
-  apply(films_, result);
+  apply(films, result);
   apply(caps_, result);
   apply(wetted_, result);
   return result;
 }
 
+Points Carry::rates(const Points& rim_rates) const {
+  return rates_by(films_, rim_rates);
+}
+
+Points Carry::rates_over_lines(const Points& rim_rates) const {
+  return rates_by(over_lines_, rim_rates);
+}
+
 Points Carry::at(const Points& rim_moves, double fraction) const {
   Points moves(reference_.size(), Vec3::Zero());
   for (std::size_t v = 0; v < reference_.size(); ++v) {
-    if (stands_on_curves_[v] != 0) {
+    if (given_[v] != 0) {
       moves[v] = rim_moves[v] * fraction;
     }
   }

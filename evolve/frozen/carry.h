@@ -16,14 +16,21 @@ namespace meniscus::frozen {
 /// reproduces linear maps, so that the cap stays flat where its rim does.
 /// Vertices on plane walls move within them: there C is harmonic in the
 /// directions that walls leave. A face that films wet follows its rim, films'
-/// and caps', to where that has slid, by follow().
+/// and caps', to where that has slid, by follow(). Lines where films meet are
+/// given like rims (evolve/frozen/line_lead.h has their moves), and the films
+/// between follow both.
 /// Immutable after construction; at() may run in several threads.
 class Carry {
  public:
-  /// `film_order`: elimination order of the free vertices, as FilmEnergy has
-  /// found it. Throws MeshError for a film whose Laplacian is singular.
-  Carry(const films::FilmComplex& reference,
+  /// `lines`: vertices of lines that are given like rims. `film_order`:
+  /// elimination order of the free vertices, as FilmEnergy has found it. Throws
+  /// MeshError for a film whose Laplacian is singular.
+  Carry(const films::FilmComplex& reference, const std::vector<int>& lines,
         const std::vector<int>& film_order);
+
+  /// Those of the lines that rims carry: of the others, on films that float,
+  /// nothing is asked.
+  const std::vector<int>& lines() const { return lines_; }
 
   /// A vertex that stands on a curve, by a share on each of two, or on the four
   /// points of a solid's frame: X_v = sum of weight x point_at(curve, t).
@@ -39,8 +46,8 @@ class Carry {
   /// the complex's curves); zero at all other vertices.
   Points rim_moves(const std::vector<curves::Curve>& curves) const;
 
-  /// X for `fraction` of the rim moves. The reference itself, bit for bit,
-  /// when all moves are zero.
+  /// X for `fraction` of the moves of rims and lines. The reference itself, bit
+  /// for bit, when all moves are zero.
   Points at(const Points& rim_moves, double fraction) const;
 
   /// Puts the vertices inside faces that films wet where their rims, at
@@ -53,12 +60,16 @@ class Carry {
   void follow_rates(const Points& points, Points& rates) const;
   void fold_caps(const Points& points, Points& by_points) const;
 
-  /// How fast at(., 1) moves with the rim vertices' own rates.
+  /// How fast at(., 1) moves with the rates of the rims' and lines' vertices.
   Points rates(const Points& rim_rates) const;
 
-  /// at() transposed at fraction 1: a gradient by the moves of the rim
-  /// vertices, zero at others, from one by all vertices.
+  /// at() transposed at fraction 1: a gradient by the moves of the rims' and
+  /// lines' vertices, zero at others, from one by all vertices.
   Points transpose(const Points& by_points) const;
+
+  /// The same where lines are carried by the rims as films are, and not given.
+  Points rates_over_lines(const Points& rim_rates) const;
+  Points transpose_over_lines(const Points& by_points) const;
 
  private:
   struct Extension {
@@ -78,9 +89,12 @@ class Carry {
   static bool is_apex(const films::FilmComplex& reference, int facet, int v);
   Points by_weights(const Points& points) const;
   static Part part_of(const films::ComplexSurface& surface);
+  /// `given` (one per vertex): of lines, which are not carried.
   static std::vector<char> carried_vertices(const films::FilmComplex& reference,
-                                            Part part);
+                                            Part part,
+                                            const std::vector<char>& given);
   static Extension extend(const films::FilmComplex& reference, Part part,
+                          const std::vector<char>& given,
                           const std::vector<int>& order);
   static void bind_to_walls(const films::FilmComplex& reference,
                             const SparseMatrix& inner, Extension& extension);
@@ -88,12 +102,17 @@ class Carry {
   static void apply(const Extension& extension, Points& moves);
   static void add_transposed(const Extension& extension,
                              const Points& by_points, Points& result);
+  Points rates_by(const Extension& films, const Points& rim_rates) const;
+  Points transpose_by(const Extension& films, const Points& by_points) const;
 
   Points reference_;
   std::vector<std::vector<Stand>> stands_;
   std::vector<char> stands_on_curves_;  // per vertex
-  bool slides_ = false;                 // on walls, some of it
+  std::vector<int> lines_;
+  std::vector<char> given_;  // per vertex: on a curve or a line
+  bool slides_ = false;      // on walls, some of it
   Extension films_;
+  Extension over_lines_;  // films_ where there are lines, which it carries too
   Extension caps_;
   Extension wetted_;  // after both
   // Of its vertices those on bent walls, where they go to the nearest point.

@@ -79,7 +79,8 @@ FilmModel::Impl::AtRest FilmModel::Impl::at_rest(
   }
   AtRest film;
   film.targets = targets_of_system(system);
-  film.base = carry->at(carry->rim_moves(curves_of_system(system)), 1.0);
+  film.base =
+      base_at(carry->rim_moves(curves_of_system(system)), film.targets, 1.0);
   film.directions = energy->space().directions(film.base);
   film.pressure.resize(energy->functionals());
   for (int b = 0; b < energy->functionals(); ++b) {
@@ -100,9 +101,25 @@ FilmModel::Impl::AtRest FilmModel::Impl::at_rest(
   return film;
 }
 
+FilmGradient FilmModel::Impl::gradient_of(FilmAdjoint::Result found) const {
+  Points by_rim = carry->transpose(found.base);
+  if (lead) {
+    // The base follows lines, which follow all else to first order.
+    const FilmAdjoint::Result by = lead->transpose(by_rim);
+    flat(by_rim) += flat(carry->transpose_over_lines(by.base));
+    found.tensions += by.tensions;
+    found.volumes += by.volumes;
+    found.pressures += by.pressures;
+    for (std::size_t q = 0; q < found.numbers.size(); ++q) {
+      found.numbers[q] += by.numbers[q];
+    }
+  }
+  return {rim_gradients(by_rim), found.tensions, found.volumes, found.pressures,
+          found.numbers};
+}
+
 std::vector<RimGradient> FilmModel::Impl::rim_gradients(
-    const Points& by_base) const {
-  const Points by_rim = carry->transpose(by_base);
+    const Points& by_rim) const {
   std::vector<RimGradient> result(complex.curves.size());
   for (std::size_t c = 0; c < result.size(); ++c) {
     result[c].curve = complex.curves[c].name;
@@ -132,9 +149,7 @@ std::vector<FilmGradient> FilmModel::transpose(
   result.reserve(responses.size());
   for (FilmCovector response : responses) {
     impl_->carry->fold_caps(state.points, response.points);
-    const FilmAdjoint::Result found = adjoint.transpose(response);
-    result.push_back({impl_->rim_gradients(found.base), found.tensions,
-                      found.volumes, found.pressures, found.numbers});
+    result.push_back(impl_->gradient_of(adjoint.transpose(response)));
   }
   return result;
 }
@@ -209,9 +224,7 @@ FilmAdjoint::Rates FilmModel::Impl::rates_of(
       result.base[stands[k].vertex] += stands[k].weight * moves[k];
     }
   }
-  // The rest of the base follows by the constant weights of the discrete
-  // harmonic extension, dX = C dr.
-  result.base = carry->rates(result.base);
+  const Points of_rims = result.base;
   // Tensions, volumes and pressures are direct numbers of the system.
   for (std::size_t s = 0; s < complex.surfaces.size(); ++s) {
     const films::FilmSpec* film =
@@ -233,6 +246,14 @@ FilmAdjoint::Rates FilmModel::Impl::rates_of(
       result.pressures[b] = body->pressure.value_or(0.0);
     }
   }
+  // The rest of the base follows by the constant weights of the discrete
+  // harmonic extension, dX = C dr, of rims and of lines where they are led to.
+  Points given = of_rims;
+  if (lead) {
+    result.base = carry->rates_over_lines(of_rims);
+    flat(given) += flat(lead->moves(result));
+  }
+  result.base = carry->rates(given);
   return result;
 }
 

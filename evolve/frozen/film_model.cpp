@@ -429,6 +429,34 @@ void FilmModel::Impl::refine_and_settle(int levels, bool may_groom,
   }
 }
 
+/// Once the reference is at rest.
+void FilmModel::Impl::lead_lines(const films::FilmSystem& initial) {
+  if (carry->lines().empty() || reference.failure) {
+    return;
+  }
+  AtRest film = at_rest(reference, initial);
+  lead = std::make_unique<const LineLead>(
+      *energy, std::move(film.targets), std::move(film.base),
+      std::move(film.paths), reference.points, reference.heights,
+      std::move(film.pressure), carry->lines());
+}
+
+Points FilmModel::Impl::base_at(const Points& rim_moves,
+                                const films::FilmTargets& goal,
+                                double fraction) const {
+  if (!lead) {
+    return carry->at(rim_moves, fraction);
+  }
+  FilmAdjoint::Rates to_goal = lead->differences(goal);
+  to_goal.base = carry->rates_over_lines(rim_moves);
+  Points moves = rim_moves;
+  const Points of_lines = lead->moves(to_goal);
+  for (const int v : lead->lines()) {
+    moves[v] = of_lines[v];
+  }
+  return carry->at(moves, fraction);
+}
+
 settle::FilmState FilmModel::Impl::settle_in_parts(
     const Points& moves, const films::FilmTargets& goal, int parts,
     const settle::SettleOptions& options) const {
@@ -440,7 +468,7 @@ settle::FilmState FilmModel::Impl::settle_in_parts(
   try {
     for (int part = 1; part <= parts && !state.failure; ++part) {
       const double t = static_cast<double>(part) / parts;
-      const Points base = carry->at(moves, t);
+      const Points base = base_at(moves, goal, t);
       state = settle::settle_along(
           *energy, complex, part == parts ? goal : blend(targets, goal, t),
           base, energy->space().directions(base), state.heights, usual_neck,
@@ -551,9 +579,11 @@ FilmModel FilmModel::finish(std::unique_ptr<Impl> impl,
   // the frozen model gives at the initial design.
   if (!model.impl_->reference.failure) {
     model.impl_->carry.emplace(model.impl_->complex,
+                               lines_of(model.impl_->complex),
                                model.impl_->energy->order());
     model.impl_->usual_neck = model.impl_->reference.report.smallest_neck;
     model.impl_->reference = model.settle(initial, settle);
+    model.impl_->lead_lines(initial);
   } else if (model.impl_->reference.points.size() !=
              model.impl_->complex.mesh.points.size()) {
     model.impl_->reference.points = model.impl_->complex.mesh.points;

@@ -9,8 +9,10 @@
 /// r: rim points on the curves at fixed curve parameters; C: constant harmonic
 /// weights, rows summing to one (evolve/frozen/carry.h); n_i: unit vertex
 /// normal of X(p); h: minimises tension x area and the field energies over the
-/// film at the bodies' volumes and pressures. Tensions may change with the
-/// design, tension fields and field energies stay those of the initial one.
+/// film at the bodies' volumes and pressures. Lines where films meet have two
+/// directions, points where lines do three, and X follows them to first order
+/// (evolve/frozen/line_lead.h). Tensions and the numbers of fields may change
+/// with the design, the fields' formulas stay those of the initial one.
 #pragma once
 
 #include <memory>

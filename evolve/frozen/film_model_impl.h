@@ -2,6 +2,7 @@
 /// nowhere else.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "evolve/frozen/carry.h"
 #include "evolve/frozen/film_adjoint.h"
 #include "evolve/frozen/film_model.h"
+#include "evolve/frozen/line_lead.h"
 
 namespace meniscus::frozen {
 
@@ -22,6 +24,7 @@ struct FilmModel::Impl {
   films::FilmComplex meshed_complex;  // the same with all it is made of
   std::optional<energy::FilmEnergy> energy;
   std::optional<Carry> carry;
+  std::unique_ptr<const LineLead> lead;  // null: no lines that move
   films::FilmTargets targets;
   settle::FilmState reference;
   double usual_neck = 0.0;    // of the reference [length]
@@ -93,7 +96,13 @@ struct FilmModel::Impl {
   AtRest at_rest(const settle::FilmState& state,
                  const films::FilmSystem& system) const;
   void check_response(const FilmCovector& response) const;
-  std::vector<RimGradient> rim_gradients(const Points& by_base) const;
+  void lead_lines(const films::FilmSystem& initial);
+  /// X for `fraction` of the way from the reference to a design.
+  Points base_at(const Points& rim_moves, const films::FilmTargets& goal,
+                 double fraction) const;
+  /// From derivatives by X, and by the rest at fixed X.
+  FilmGradient gradient_of(FilmAdjoint::Result found) const;
+  std::vector<RimGradient> rim_gradients(const Points& by_rim) const;
   std::vector<FilmGradient> rigid_gradients(
       const std::vector<FilmCovector>& responses) const;
   FilmAdjoint::Rates rates_of(const films::FilmSystem& system,

@@ -60,7 +60,7 @@ std::vector<FilmGradient> FilmModel::Impl::rigid_gradients(
     by_points.resize(complex.vertices.size(), Vec3::Zero());
     const auto bodies = static_cast<Eigen::Index>(complex.bodies.size());
     result.push_back(
-        {rim_gradients(by_points),
+        {rim_gradients(carry->transpose(by_points)),
          VectorX::Zero(static_cast<Eigen::Index>(complex.surfaces.size())),
          VectorX::Zero(bodies), VectorX::Zero(bodies)});
   }

@@ -58,16 +58,7 @@ class StartBuilder {
     facets_ = start_from_facets(system_, edge_, system_.keep_facets);
     facets_.cuts.merge(solids_.take_cuts());
     facet_points_.assign(facets_.points.size(), -1);
-    for (const films::FilmSpec& film : system_.films) {
-      for (const std::string& name : film.curves) {
-        rim_of(name, film.name);
-      }
-    }
-    for (const films::CapSpec& cap : system_.caps) {
-      for (const std::string& name : cap.curves()) {
-        rim_of(name, cap.name);
-      }
-    }
+    make_rims();
     require_room_for_caps();
     solids_.add_edges(
         [&](const std::string& curve) -> const std::vector<int>& {
@@ -85,6 +76,7 @@ class StartBuilder {
     refuse_twins();
     add_bodies(raised);
     add_walls();
+    free_lines();
     std::vector<films::FilmQuantity> poles = poles_of_bodies();
     cut_start(system_, edge_, result_);
     if (has_cuts(system_)) {
@@ -135,6 +127,49 @@ class StartBuilder {
     for (const films::CapSpec& cap : system_.caps) {
       add(cap.name);
     }
+  }
+
+  /// Those of free curves last: sides that they share with others are held.
+  void make_rims() {
+    for (const bool free : {false, true}) {
+      const auto add = [&](const std::vector<std::string>& names,
+                           const std::string& user) {
+        for (const std::string& name : names) {
+          if (is_free(name) == free) {
+            rim_of(name, user);
+          }
+        }
+      };
+      for (const films::FilmSpec& film : system_.films) {
+        add(film.curves, film.name);
+      }
+      for (const films::CapSpec& cap : system_.caps) {
+        add(cap.curves(), cap.name);
+      }
+    }
+  }
+
+  bool is_free(const std::string& curve) const {
+    return std::any_of(
+        system_.curves.begin(), system_.curves.end(),
+        [&](const curves::Curve& c) { return c.free && c.name == curve; });
+  }
+
+  /// Films began along free curves; from here on their lines are liquid.
+  void free_lines() {
+    for (films::ComplexVertex& vertex : result_.vertices) {
+      if (vertex.kind == films::VertexKind::OnCurve &&
+          result_.curves[vertex.curve].free) {
+        vertex = {};
+      }
+    }
+    const auto last =
+        std::remove_if(result_.edges.begin(), result_.edges.end(),
+                       [&](const films::ComplexEdge& mark) {
+                         return mark.kind == films::VertexKind::OnCurve &&
+                                result_.curves[mark.curve].free;
+                       });
+    result_.edges.erase(last, result_.edges.end());
   }
 
   /// Before they are filled: their flat areas alone tell edges that are far too

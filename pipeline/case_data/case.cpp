@@ -250,6 +250,12 @@ void refine_curves(const Case& input, films::FilmSystem& system) {
     if (const double pieces = input.curves[k].pieces; pieces > 0.0) {
       system.curves[k].fineness = std::min(1.0, pieces / input.resolution.fea);
     }
+    system.curves[k].free = input.curves[k].free;
+  }
+  for (const MergedCurves& pair : input.merged) {  // one that is held holds
+    curves::Curve& kept = system.curves[static_cast<std::size_t>(pair.kept)];
+    kept.free =
+        kept.free && input.curves[static_cast<std::size_t>(pair.dropped)].free;
   }
   constexpr double kPiece = 1.0 / 3.0;  // of the radius: four to a quarter turn
   for (const films::FilletSpec& fillet : system.fillets) {

@@ -112,6 +112,53 @@ void check_use(const Case& input, CaseProblems& problems) {
   }
 }
 
+/// Where fewer than three films meet, or a solid's face, nothing balances a
+/// line that moves.
+void check_free_curves(const Case& input, CaseProblems& problems) {
+  for (const CurveEntry& curve : input.curves) {
+    const bool is_dropped = std::any_of(
+        input.merged.begin(), input.merged.end(), [&](const MergedCurves& m) {
+          return &input.curves[static_cast<std::size_t>(m.dropped)] == &curve;
+        });
+    if (!curve.free || is_dropped) {
+      continue;
+    }
+    const auto names_it = [&](const std::vector<std::string>& names) {
+      return std::find(names.begin(), names.end(), curve.name) != names.end();
+    };
+    const auto films = std::count_if(
+        input.films.begin(), input.films.end(),
+        [&](const FilmEntry& film) { return names_it(film.spec.curves); });
+    if (films < 3) {
+      problems.add(
+          curve.line,
+          fmt::format("curve '{}' is free and {} film{} there; lines "
+                      "balance where three films or more meet: let "
+                      "more end there, or hold it (free = false)",
+                      curve.name, films, films == 1 ? " ends" : "s end"));
+    }
+    for (const CapEntry& cap : input.caps) {
+      if (names_it(cap.spec.curves())) {
+        problems.add(
+            cap.line,
+            fmt::format("solid '{}' ends at curve '{}', which is free; "
+                        "solids' faces do not follow films: end them "
+                        "at a curve that is held",
+                        cap.spec.name, curve.name));
+      }
+    }
+    for (const FilletEntry& fillet : input.fillets) {
+      if (names_it(fillet.curves)) {
+        problems.add(fillet.line,
+                     fmt::format("fillet '{}' is along curve '{}', which is "
+                                 "free: films meet there at angles of their "
+                                 "own; walls have a fillet of theirs",
+                                 fillet.name, curve.name));
+      }
+    }
+  }
+}
+
 /// What acts on a surface between two solid bodies acts within the part.
 void check_inner_surfaces(const Case& input, CaseProblems& problems) {
   std::map<std::string, std::vector<std::string>> solids;  // by surface
@@ -640,6 +687,7 @@ void check_case(const Case& input, CaseProblems& problems) {
   if (problems.empty()) {
     check_liquid(input, problems);
     check_use(input, problems);
+    check_free_curves(input, problems);
     check_wetted_walls(input, problems);
     check_inner_surfaces(input, problems);
     check_numbers(input, problems);

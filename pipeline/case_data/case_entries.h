@@ -112,6 +112,7 @@ struct CurveEntry {
   std::vector<Vec3> fixed_points;  // of polygon and spline: from a file
   CopyEntry copy;
   double pieces = 0.0;  // length that it is cut into [length]; 0: the films'
+  bool free = false;    // films begin along it and move on
   int feature = -1;     // index of the feature, and of its curves
   int of_feature = -1;
   SourceLine line = 0;

@@ -18,35 +18,39 @@ const std::vector<CurveRow>& curve_kinds() {
   static const std::vector<CurveRow> kinds = {
       {"circle",
        Kind::Circle,
-       {{"center", "normal", "radius"}, {"pieces"}},
+       {{"center", "normal", "radius"}, {"pieces", "free"}},
        case_data::kWithNext},
       {"ellipse",
        Kind::Ellipse,
-       {{"center", "normal", "axis", "radius_1", "radius_2"}, {"pieces"}},
+       {{"center", "normal", "axis", "radius_1", "radius_2"},
+        {"pieces", "free"}},
        case_data::kWithNext},
       {"rectangle",
        Kind::Rectangle,
        {{"center", "normal", "axis", "width", "height"},
-        {"corner_radius", "pieces"}},
+        {"corner_radius", "pieces", "free"}},
        ""},
-      {"polygon", Kind::Polygon, {{"points"}, {"pieces"}}, "straight sides"},
+      {"polygon",
+       Kind::Polygon,
+       {{"points"}, {"pieces", "free"}},
+       "straight sides"},
       {"spline",
        Kind::Spline,
-       {{"points"}, {"pieces"}},
+       {{"points"}, {"pieces", "free"}},
        "smooth through points"},
       {"polyline",
        Kind::Polyline,
-       {{"points"}, {"pieces"}},
+       {{"points"}, {"pieces", "free"}},
        "straight sides and circular arcs"},
       {"file",
        Kind::Spline,  // or what the file holds
-       {{"file"}, {"as", "edge", "face", "pieces"}},
+       {{"file"}, {"as", "edge", "face", "pieces", "free"}},
        "points from a file"},
       {"copy",
        Kind::Copy,
        {{"of"},
         {"offset", "scale", "scales", "mirror", "rotate", "axis", "about",
-         "move", "pieces"}},
+         "move", "pieces", "free"}},
        "another curve offset, scaled, mirrored, turned, moved"}};
   return kinds;
 }
@@ -146,6 +150,7 @@ case_data::CurveEntry read_curve(CaseContext& context, const CaseTable& table,
   if (!kind) {
     return curve;
   }
+  curve.free = table.flag("free").value_or(false);
   if (table.has("pieces")) {
     curve.pieces = constant_above(context, table, "pieces", 0.0, 1.0);
   }
@@ -239,6 +244,9 @@ TableSpec curve_table() {
         "edges along it, where stress is to be resolved: films and elements "
         "grow from there by 0.4 of the distance; at most resolution.fea, which "
         "it is when left out"},
+       {"free", K::Flag, D::None, false,
+        "three films or more begin along it, and their line moves to where "
+        "they balance; false when left out"},
        {"of", K::Name, D::None, false, "of copy: a curve that stands above"},
        {"offset", K::Quantity, D::Length, false,
         "of copy: outwards in the curve's plane, below 0 inwards; corners "

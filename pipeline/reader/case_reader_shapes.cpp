@@ -284,8 +284,16 @@ void check_rim_shapes(CaseContext& context, const case_data::Case& result) {
          splines != nullptr
              ? std::vector<std::string>{splines->first, splines->second}
              : std::vector<std::string>()) {
-      if (std::find(known.begin(), known.end(), curve) == known.end()) {
+      const auto at = std::find(known.begin(), known.end(), curve);
+      if (at == known.end()) {
         context.problems.unknown(entry.line, "curve", curve, known);
+      } else if (result.curves[static_cast<std::size_t>(at - known.begin())]
+                     .free) {
+        context.problems.add(
+            entry.line,
+            fmt::format("shapes.{} begins or ends at curve '{}', which is "
+                        "free; name curves that hold films",
+                        entry.name, curve));
       }
     }
   }

@@ -79,7 +79,8 @@ class SystemMirror {
         copy.of = std::make_shared<const curves::Curve>(curve);
         copy.mirror = plane_.normal;
         copy.about = plane_.at;
-        system_.curves.push_back({image(curve.name), copy, curve.fineness});
+        system_.curves.push_back(
+            {image(curve.name), copy, curve.fineness, curve.free});
       }
     }
   }

@@ -16,7 +16,8 @@ struct Tube {
   frozen::Carry carry;
 
   Tube()
-      : complex(make()), carry(complex, energy::FilmEnergy(complex).order()) {}
+      : complex(make()),
+        carry(complex, {}, energy::FilmEnergy(complex).order()) {}
 
   static films::FilmComplex make() {
     films::FilmComplex complex =

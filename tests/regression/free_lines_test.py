@@ -1,0 +1,221 @@
+#!/usr/bin/env python3
+"""Films that meet along a free curve, from outside: chambers of two materials and
+walls about a line that no curve holds, drawn at random; gradients, files, halves,
+bits."""
+import json
+import random
+import re
+import unittest
+
+from program import ProgramTest, without_seconds
+from walls_test import PIPE
+
+# Two chambers of a tube, their bulkhead's rim free.
+TUBE = """title = "A tube with a bulkhead"
+units = "mm-N-MPa"
+
+[design.foot]
+initial = {foot}
+bounds = [20.0, 40.0]
+
+[design.aside]
+initial = {aside}
+bounds = [-10.0, 10.0]
+
+[design.fill]
+initial = {fill}
+bounds = [1e4, 2e5]
+
+[design.pull]
+initial = {pull}
+bounds = [0.3, 1.8]
+
+[curves.base]
+kind = "circle"
+center = [0, 0, 0]
+normal = [0, 0, -1]
+radius = "foot"
+
+[curves.line]
+kind = "circle"
+center = [{x}, 0, {z}]
+normal = [0, 0, 1]
+radius = 27
+free = true
+
+[curves.head]
+kind = "circle"
+center = ["aside", 0, 50]
+normal = [0, 0, 1]
+radius = 28
+{top}
+[films.lower]
+kind = "loft"
+curves = ["base", "line"]
+
+[films.upper]
+kind = "loft"
+curves = ["line", "head"]
+
+[films.web]
+kind = "disk"
+curves = ["line"]
+tension = "pull"
+
+[solids.foot_pad]
+kind = "cap"
+curve = "base"
+
+[solids.head_pad]
+kind = "cap"
+curve = "head"
+
+[bodies.down]
+enclosed_by = ["lower", "web", "foot_pad"]
+volume = "{half} * fill"
+material = "steel"
+
+[bodies.up]
+enclosed_by = ["upper", "web", "head_pad"]
+volume = "{half} * {up}"
+material = "brass"
+
+[materials.steel]
+youngs_modulus = 210000
+poisson_ratio = 0.3
+density = "7850 kg/m^3"
+
+[materials.brass]
+youngs_modulus = 100000
+poisson_ratio = 0.33
+density = "8500 kg/m^3"
+
+[load_cases.service]
+supports = [{{ on = "foot_pad", fix = "xyz" }}]
+loads = [{{ on = "head_pad", force = ["{half} * 2000 N", 0, 0] }}]
+
+[responses.sway]
+kind = "mean_displacement"
+on = "head_pad"
+direction = [1, 0, 0]
+
+[responses.mass]
+kind = "mass"
+
+[responses.pressure]
+kind = "pressure"
+body = "down"
+
+[analysis]
+buckling = 0
+
+[resolution]
+fea = {edge}
+"""
+HALF = """
+[symmetry]
+planes = [{ at = [0, 0, 0], normal = [0, -1, 0] }]
+"""
+
+
+def tube(seed, **changed):
+    """One drawn at random: numbers, and where its line begins."""
+    draw = random.Random(seed)
+    numbers = {"foot": draw.uniform(26, 31), "aside": draw.uniform(-4, 4),
+               "fill": draw.uniform(6e4, 7.5e4), "up": draw.uniform(5e4, 6e4),
+               "pull": draw.uniform(0.5, 1.4), "x": draw.uniform(-2, 2),
+               "z": draw.uniform(22, 29), "edge": draw.uniform(6, 9),
+               "top": "", "half": "1"}
+    return TUBE.format(**{**numbers, **changed})
+
+
+class FreeLines(ProgramTest):
+    def case(self, text, name="case.toml"):
+        path = self.folder / name
+        path.write_text(text, encoding="utf-8")
+        return path
+
+    def run_at(self, text, name, **options):
+        out = self.folder / name
+        self.expect(self.call("run", self.case(text, name + ".toml"), "--out",
+                              out, "--no-pictures", "--no-report", **options), 0)
+        return self.result(out)
+
+    def test_gradients_are_exact(self):
+        for seed in range(4):
+            self.expect(self.call("check-gradient", self.case(tube(seed))), 0,
+                        "all 12 derivatives agree")
+
+    # The curve is where films begin, no more.
+    def test_the_line_forgets_where_it_began(self):
+        for seed in (5, 6):
+            found = [self.run_at(tube(seed, x=x, z=z, edge=6), f"from_{x}_{z}")
+                     for x, z in ((0, 24), (2, 28), (-2, 22))]
+            for response in ("sway", "pressure"):
+                values = [r["responses"][response] for r in found]
+                self.assertLess(max(values) / min(values) - 1, 0.02, response)
+
+    def test_a_half_is_the_whole(self):
+        for seed in (7, 8):
+            whole = self.run_at(tube(seed, edge=5), f"whole_{seed}")
+            half = self.run_at(tube(seed, edge=5, top=HALF, half="1 / 2"),
+                               f"half_{seed}")
+            for response in ("sway", "mass", "pressure"):
+                self.assertAlmostEqual(
+                    half["responses"][response] / whole["responses"][response],
+                    1, delta=0.01, msg=response)
+            self.expect(self.call("check-gradient",
+                                  self.folder / f"half_{seed}.toml"), 0)
+
+    def test_same_bits_for_any_thread_count(self):
+        found = []
+        for threads in ("1", "2"):
+            result = self.run_at(tube(9), f"threads_{threads}",
+                                 env={"OMP_NUM_THREADS": threads})
+            for key in ("ledger", "case", "case_hash", "process_memory"):
+                result.pop(key, None)
+            found.append(json.dumps(without_seconds(result)))
+        self.assertEqual(found[0], found[1])
+
+    # The line is an edge of three faces; gaps and deviation as of others.
+    def test_step_has_the_line(self):
+        self.run_at(tube(10), "out")
+        done = self.expect(self.call("export", self.folder / "out", "--format",
+                                     "step"), 0)
+        gap, off = re.search(r"gap at edges (\S+) mm.*\((\S+) of its edge\)",
+                             done.stdout + done.stderr).groups()
+        self.assertLess(float(gap), 0.01)
+        self.assertLess(float(off), 0.1)
+
+    def test_walls_and_their_fillets_go_with_it(self):
+        text = PIPE.replace("radius = 26\n", "radius = 26\nfree = true\n")
+        out = self.folder / "walls"
+        case = self.case(text)
+        self.expect(self.call("evolve", case, "--out", out), 0)
+        wall = json.loads((out / "wall_pipe.json").read_text())
+        self.assertEqual(wall["findings"], "")
+        for end in ("thinnest", "thickest"):
+            self.assertLess(abs(wall[end]["value"] / wall[end]["asked"] - 1),
+                            0.05)
+        self.expect(self.call("check-gradient", case), 0)
+
+    def test_what_a_line_cannot_bear_is_refused_with_the_place(self):
+        text = tube(0)
+        lines = text.split("\n")
+        at = lines.index("[curves.line]") + 1
+        for change, place, message in (
+                (('curves = ["line", "head"]', 'curves = ["base", "head"]'), at,
+                 "curve 'line' is free and 2 films end there"),
+                (('curve = "base"\n\n[solids.head_pad]\nkind = "cap"\n'
+                  'curve = "head"',
+                  'curve = "base"\n\n[solids.head_pad]\nkind = "cap"\n'
+                  'curve = "line"'),
+                 lines.index("[solids.head_pad]") + 1,
+                 "solid 'head_pad' ends at curve 'line', which is free")):
+            self.assertIn(change[0], text)
+            self.expect(self.call("check", self.case(text.replace(*change))),
+                        2, f"case.toml:{place}: {message}")
+
+
+if __name__ == "__main__":
+    unittest.main()
