@@ -49,14 +49,8 @@ CaseValues::CaseValues(const Case& input, const VectorX& design,
                                    input.path, design.size(),
                                    input.design.size()));
   }
-  for (const DesignVariable& variable : input.design) {
-    names_.push_back(variable.name);
-  }
-  for (const Parameter& parameter : input.parameters) {
-    names_.push_back(parameter.name);
-  }
   values_.assign(design.begin(), design.end());
-  values_.resize(names_.size(), 0.0);
+  values_.resize(input.design.size() + input.parameters.size(), 0.0);
   parameter_follows_.resize(input.parameters.size(), 0);
   for (const int k : input.parameter_order) {
     const auto i = static_cast<std::size_t>(k);
@@ -65,10 +59,24 @@ CaseValues::CaseValues(const Case& input, const VectorX& design,
   }
 }
 
+const std::string& CaseValues::name_of(std::size_t k) const {
+  const std::size_t design = input_.design.size();
+  return k < design ? input_.design[k].name
+                    : input_.parameters[k - design].name;
+}
+
+std::vector<std::string> CaseValues::names() const {
+  std::vector<std::string> result;
+  for (std::size_t k = 0; k < values_.size(); ++k) {
+    result.push_back(name_of(k));
+  }
+  return result;
+}
+
 bool CaseValues::follows(int name) const {
   const auto k = static_cast<std::size_t>(name);
   const std::size_t design = input_.design.size();
-  return k < design || (k < names_.size() && parameter_follows_[k - design]);
+  return k < design || (k < values_.size() && parameter_follows_[k - design]);
 }
 
 bool CaseValues::follows_design(const Quantity& quantity) const {
@@ -136,7 +144,7 @@ Expression CaseValues::of_place(const PlaceQuantity& place_quantity) const {
   }
   try {
     return Expression::parse(
-        with_values(quantity.expression.text(), names_, values_),
+        with_values(quantity.expression.text(), names(), values_),
         {"x", "y", "z"});
   } catch (const ExpressionError& error) {
     problems_.push_back(fmt::format("{}: {}: {}", place(input_, quantity.line),
@@ -154,7 +162,7 @@ PlaceField CaseValues::place_field(const PlaceQuantity& place_quantity) const {
   std::vector<double> numbers;
   std::vector<double> coefficients;
   std::vector<std::string> shapes;
-  const std::size_t first_shape = names_.size() + 3;
+  const std::size_t first_shape = values_.size() + 3;
   for (const int name : from.names_used()) {
     const auto k = static_cast<std::size_t>(name);
     if (k >= first_shape) {
@@ -165,12 +173,12 @@ PlaceField CaseValues::place_field(const PlaceQuantity& place_quantity) const {
         coefficients.push_back(at(coefficient));
       }
     } else if (follows(name)) {
-      before.push_back(names_[k]);
-      after.push_back(plain_name(input_, names_[k], names_, after));
+      before.push_back(name_of(k));
+      after.push_back(plain_name(input_, name_of(k), names(), after));
       result.names.push_back(after.back());
       numbers.push_back(are_rates() ? rate_of(duals_[k]) : values_[k]);
-    } else if (k < names_.size()) {
-      before.push_back(names_[k]);
+    } else if (k < values_.size()) {
+      before.push_back(name_of(k));
       after.push_back(fmt::format("({})", values_[k]));
     }
   }
@@ -276,7 +284,7 @@ std::string CaseValues::where_text(const std::vector<char>& used) const {
   for (std::size_t k = 0; k < used.size(); ++k) {
     if (used[k] != 0) {
       text += fmt::format("{}{} = {:g}", text.empty() ? " where " : ", ",
-                          names_[k], values_[k]);
+                          name_of(k), values_[k]);
     }
   }
   return text;

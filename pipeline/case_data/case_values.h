@@ -88,6 +88,8 @@ class CaseValues {
   std::vector<std::string>& problems() const { return problems_; }
 
  private:
+  const std::string& name_of(std::size_t k) const;
+  std::vector<std::string> names() const;
   double evaluate(const Quantity& quantity) const;
   bool follows(int name) const;
   double nothing(const Quantity& quantity, const ExpressionError& error) const;
@@ -104,7 +106,6 @@ class CaseValues {
 
   const Case& input_;
   std::vector<std::string>& problems_;
-  std::vector<std::string> names_;
   std::vector<double> values_;
   std::vector<char> parameter_follows_;  // some design variable
   std::vector<Dual> duals_;              // of one variable; for rates only

@@ -136,18 +136,17 @@ bool Adjoint::solve_adjoints(DesignGradient& result) {
 bool Adjoint::materials_move() const {
   const case_data::Case& input = in_.part.input;
   std::vector<std::string> problems;
-  for (std::size_t j = 0; j < input.design.size(); ++j) {
-    const case_data::CaseValues rates(input, in_.context.inputs.design,
-                                      problems, static_cast<int>(j));
-    for (const case_data::BodyEntry& body : case_data::solid_bodies(input)) {
-      const case_data::MaterialEntry& entry = input.materials[body.material];
-      if (rates.at(entry.density) != 0.0 ||
-          (!entry.orthotropic && rates.at(entry.youngs_modulus) != 0.0)) {
-        return true;
-      }
-    }
-  }
-  return false;
+  const case_data::CaseValues values(input, in_.context.inputs.design,
+                                     problems);
+  const std::vector<case_data::BodyEntry> bodies =
+      case_data::solid_bodies(input);
+  return std::any_of(
+      bodies.begin(), bodies.end(), [&](const case_data::BodyEntry& body) {
+        const case_data::MaterialEntry& entry = input.materials[body.material];
+        return values.follows_design(entry.density) ||
+               (!entry.orthotropic &&
+                values.follows_design(entry.youngs_modulus));
+      });
 }
 
 void add(const std::vector<double>& more, std::vector<double>& sum) {
