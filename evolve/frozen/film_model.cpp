@@ -578,9 +578,10 @@ FilmModel FilmModel::finish(std::unique_ptr<Impl> impl,
   // Settled once more along carried directions, so that the reference is what
   // the frozen model gives at the initial design.
   if (!model.impl_->reference.failure) {
-    model.impl_->carry.emplace(model.impl_->complex,
-                               lines_of(model.impl_->complex),
-                               model.impl_->energy->order());
+    model.impl_->carry.emplace(
+        model.impl_->complex,
+        lines_of(model.impl_->complex, model.impl_->energy->space()),
+        model.impl_->energy->order());
     model.impl_->usual_neck = model.impl_->reference.report.smallest_neck;
     model.impl_->reference = model.settle(initial, settle);
     model.impl_->lead_lines(initial);

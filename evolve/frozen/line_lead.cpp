@@ -2,33 +2,16 @@
 
 #include <utility>
 
-#include "core/geometry/edge_key.h"
-
 namespace meniscus::frozen {
 
-std::vector<int> lines_of(const films::FilmComplex& reference) {
-  std::vector<Edge> edges;
-  std::vector<Triangle> facet_edges;
-  list_edges(reference.mesh.facets, edges, facet_edges);
-  std::vector<int> films(edges.size(), 0);
-  for (std::size_t f = 0; f < facet_edges.size(); ++f) {
-    if (reference.surfaces[reference.mesh.facet_label[f]].liquid) {
-      for (const int e : facet_edges[f]) {
-        ++films[e];
-      }
-    }
-  }
-  std::vector<char> on_line(reference.vertices.size(), 0);
-  for (std::size_t e = 0; e < edges.size(); ++e) {
-    if (films[e] > 2) {
-      on_line[edges[e][0]] = on_line[edges[e][1]] = 1;
-    }
-  }
+std::vector<int> lines_of(const films::FilmComplex& reference,
+                          const energy::FilmSpace& space) {
   std::vector<int> result;
-  for (std::size_t v = 0; v < on_line.size(); ++v) {
-    if (on_line[v] != 0 &&
+  for (std::size_t v = 0; v < reference.vertices.size(); ++v) {
+    const auto id = static_cast<int>(v);
+    if (space.rank(id) > 1 &&
         reference.vertices[v].kind == films::VertexKind::Free) {
-      result.push_back(static_cast<int>(v));
+      result.push_back(id);
     }
   }
   return result;

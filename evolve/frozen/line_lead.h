@@ -13,9 +13,10 @@
 
 namespace meniscus::frozen {
 
-/// Vertices of a line where three films or more meet, in order; none of lines
-/// that nothing fixed carries, of free bubbles.
-std::vector<int> lines_of(const films::FilmComplex& reference);
+/// Vertices that move in more directions than one, in order: of lines where
+/// three films or more meet.
+std::vector<int> lines_of(const films::FilmComplex& reference,
+                          const energy::FilmSpace& space);
 
 /// Neither copied nor moved: what it is factored from stays in it.
 class LineLead {
