@@ -93,6 +93,9 @@ struct Curve {
                           // edge, in (0, 1]; models are frozen with it
   /// Films only begin along it; their common line moves to where it balances.
   bool free = false;
+  /// The same along these sides of a polygon or polyline alone, from 0: side k
+  /// runs from corner k to the next. It holds films along the others.
+  std::vector<int> free_sides = {};
 };
 
 /// Throws InvalidInput, naming the curve and the value, for a shape that is no

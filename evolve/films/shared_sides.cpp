@@ -1,6 +1,7 @@
 #include "evolve/films/shared_sides.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/geometry/edge_key.h"
 
@@ -75,6 +76,65 @@ std::vector<SharedSide> shared_sides(const std::vector<curves::Curve>& curves) {
   return result;
 }
 
+FreePlaces::FreePlaces(const std::vector<curves::Curve>& curves,
+                       const std::vector<char>& used) {
+  for (const curves::Curve& curve : curves) {
+    const std::size_t sides = sides_of(curve.shape).size();
+    whole_.push_back(curve.free ? 1 : 0);
+    sides_.emplace_back(sides, curve.free ? 1 : 0);
+    for (const int side : curve.free_sides) {
+      sides_.back()[static_cast<std::size_t>(side)] = 1;
+    }
+    corners_.emplace_back(sides, 0);
+    any_ = any_ || curve.free || !curve.free_sides.empty();
+  }
+  if (!any_) {
+    return;
+  }
+  for (const SharedSide& side : shared_sides(curves)) {
+    if (used[side.first_curve] == 0 || used[side.second_curve] == 0) {
+      continue;
+    }
+    char& first = sides_[side.first_curve][side.first_side];
+    char& second = sides_[side.second_curve][side.second_side];
+    first = second = first != 0 && second != 0 ? 1 : 0;
+  }
+  Points held;  // corners of sides that are not free
+  for (std::size_t c = 0; c < curves.size(); ++c) {
+    const std::vector<CurveSide> sides = sides_of(curves[c].shape);
+    for (std::size_t k = 0; k < sides.size(); ++k) {
+      if (used[c] != 0 && sides_[c][k] == 0) {
+        held.insert(held.end(), {sides[k].from, sides[k].to});
+      }
+    }
+  }
+  const double reach = reach_of(curves);
+  for (std::size_t c = 0; c < curves.size(); ++c) {
+    const std::vector<CurveSide> sides = sides_of(curves[c].shape);
+    for (std::size_t k = 0; k < sides.size(); ++k) {
+      const bool is_held = std::any_of(
+          held.begin(), held.end(),
+          [&](const Vec3& p) { return (p - sides[k].from).norm() <= reach; });
+      corners_[c][k] = is_held ? 0 : 1;
+    }
+  }
+}
+
+bool FreePlaces::is_free(int curve, double t) const {
+  constexpr double kAtCorner = 1e-9;  // of a side
+  const auto c = static_cast<std::size_t>(curve);
+  const std::size_t sides = sides_[c].size();
+  if (sides == 0 || !any_) {
+    return whole_[c] != 0;
+  }
+  const double at = t * static_cast<double>(sides);
+  const double corner = std::round(at);
+  if (std::abs(at - corner) < kAtCorner) {
+    return corners_[c][static_cast<std::size_t>(corner) % sides] != 0;
+  }
+  return sides_[c][static_cast<std::size_t>(at) % sides] != 0;
+}
+
 SharedRims::SharedRims(const std::vector<curves::Curve>& curves)
     : shares_(curves.size(), 0), reach_(reach_of(curves)) {
   for (const SharedSide& side : shared_sides(curves)) {
@@ -100,7 +160,8 @@ int SharedRims::corner(int curve, int k, const CurveSide& side, int sides,
 
 /// The side's vertices, made where it is new; `inner`: parameters between its
 /// ends.
-const SharedRims::Chain& SharedRims::chain(int curve, const CurveSide& side,
+const SharedRims::Chain& SharedRims::chain(int curve, int number,
+                                           const CurveSide& side,
                                            const Edge& ends,
                                            const std::vector<double>& inner,
                                            FilmComplex& complex) {
@@ -112,6 +173,7 @@ const SharedRims::Chain& SharedRims::chain(int curve, const CurveSide& side,
   }
   Chain& chain = between.emplace_back();
   chain.curve = curve;
+  chain.side = number;
   chain.middle = side.middle;
   chain.from = {ends[0]};
   const curves::CurveShape& shape = complex.curves[curve].shape;
@@ -146,7 +208,8 @@ std::vector<int> SharedRims::rim(int curve, const std::vector<double>& t,
     inner.erase(inner.begin());
     const int a = corners[k];
     const int b = corners[(k + 1) % n];
-    std::vector<int> way = chain(curve, sides[k], {a, b}, inner, complex).from;
+    std::vector<int> way =
+        chain(curve, k, sides[k], {a, b}, inner, complex).from;
     if (a > b) {
       std::reverse(way.begin(), way.end());
     }
@@ -155,9 +218,13 @@ std::vector<int> SharedRims::rim(int curve, const std::vector<double>& t,
   return around;
 }
 
-void SharedRims::mark_edges(FilmComplex& complex) const {
+void SharedRims::mark_edges(const FreePlaces& free,
+                            FilmComplex& complex) const {
   for (const auto& [ends, chains] : sides_) {
     for (const Chain& chain : chains) {
+      if (free.is_side_free(chain.curve, chain.side)) {
+        continue;
+      }
       for (std::size_t k = 0; k + 1 < chain.from.size(); ++k) {
         ComplexEdge mark;
         mark.a = chain.from[k];

@@ -32,6 +32,29 @@ struct SharedSide {
 /// curves' size apart.
 std::vector<SharedSide> shared_sides(const std::vector<curves::Curve>& curves);
 
+/// Where curves hold nothing. A side is free where all curves that have it say
+/// so, a corner where all sides are that meet there.
+class FreePlaces {
+ public:
+  /// `used`: one per curve, of those that some surface ends at.
+  FreePlaces(const std::vector<curves::Curve>& curves,
+             const std::vector<char>& used);
+
+  bool any() const { return any_; }
+  bool is_side_free(int curve, int side) const {
+    return sides_[static_cast<std::size_t>(curve)]
+                 [static_cast<std::size_t>(side)] != 0;
+  }
+  /// At a place of the curve, t from 0 to 1.
+  bool is_free(int curve, double t) const;
+
+ private:
+  bool any_ = false;
+  std::vector<char> whole_;               // per curve, of those without sides
+  std::vector<std::vector<char>> sides_;  // per curve
+  std::vector<std::vector<char>> corners_;
+};
+
 /// Makes the rims of curves with shared sides out of one set of vertices: a
 /// corner is one vertex, a side one chain, for all curves that have it. Each
 /// belongs to the curve that came first; marked edges say so to refinement
@@ -50,19 +73,21 @@ class SharedRims {
   std::vector<int> rim(int curve, const std::vector<double>& t,
                        FilmComplex& complex);
 
-  /// Marks the edges of all rims made so far.
-  void mark_edges(FilmComplex& complex) const;
+  /// Marks the edges of all rims made so far but for free sides.
+  void mark_edges(const FreePlaces& free, FilmComplex& complex) const;
 
  private:
   struct Chain {
     int curve = 0;  // whose vertices these are
+    int side = 0;   // of that curve
     Vec3 middle;
     std::vector<int> from;  // smaller corner to larger one, ends included
   };
   int corner(int curve, int k, const CurveSide& side, int sides,
              FilmComplex& complex);
-  const Chain& chain(int curve, const CurveSide& side, const Edge& ends,
-                     const std::vector<double>& inner, FilmComplex& complex);
+  const Chain& chain(int curve, int number, const CurveSide& side,
+                     const Edge& ends, const std::vector<double>& inner,
+                     FilmComplex& complex);
 
   std::vector<char> shares_;
   double reach_ = 0.0;  // corners nearer than this are one [length]

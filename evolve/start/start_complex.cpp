@@ -65,7 +65,8 @@ class StartBuilder {
           return rims_.at(curve).ids;
         },
         result_);
-    shared_.mark_edges(result_);
+    const films::FreePlaces free = free_places();
+    shared_.mark_edges(free, result_);
     for (const films::FilmSpec& film : system_.films) {
       add_film(film);
     }
@@ -76,7 +77,7 @@ class StartBuilder {
     refuse_twins();
     add_bodies(raised);
     add_walls();
-    free_lines();
+    free_lines(free);
     std::vector<films::FilmQuantity> poles = poles_of_bodies();
     cut_start(system_, edge_, result_);
     if (has_cuts(system_)) {
@@ -129,47 +130,36 @@ class StartBuilder {
     }
   }
 
-  /// Those of free curves last: sides that they share with others are held.
+  /// Of all films and solids.
   void make_rims() {
-    for (const bool free : {false, true}) {
-      const auto add = [&](const std::vector<std::string>& names,
-                           const std::string& user) {
-        for (const std::string& name : names) {
-          if (is_free(name) == free) {
-            rim_of(name, user);
-          }
-        }
-      };
-      for (const films::FilmSpec& film : system_.films) {
-        add(film.curves, film.name);
+    for (const films::FilmSpec& film : system_.films) {
+      for (const std::string& name : film.curves) {
+        rim_of(name, film.name);
       }
-      for (const films::CapSpec& cap : system_.caps) {
-        add(cap.curves(), cap.name);
+    }
+    for (const films::CapSpec& cap : system_.caps) {
+      for (const std::string& name : cap.curves()) {
+        rim_of(name, cap.name);
       }
     }
   }
 
-  bool is_free(const std::string& curve) const {
-    return std::any_of(
-        system_.curves.begin(), system_.curves.end(),
-        [&](const curves::Curve& c) { return c.free && c.name == curve; });
+  films::FreePlaces free_places() const {
+    std::vector<char> used(system_.curves.size(), 0);
+    for (const auto& [name, rim] : rims_) {
+      used[static_cast<std::size_t>(rim.curve)] = 1;
+    }
+    return {system_.curves, used};
   }
 
   /// Films began along free curves; from here on their lines are liquid.
-  void free_lines() {
+  void free_lines(const films::FreePlaces& free) {
     for (films::ComplexVertex& vertex : result_.vertices) {
       if (vertex.kind == films::VertexKind::OnCurve &&
-          result_.curves[vertex.curve].free) {
+          free.is_free(vertex.curve, vertex.t)) {
         vertex = {};
       }
     }
-    const auto last =
-        std::remove_if(result_.edges.begin(), result_.edges.end(),
-                       [&](const films::ComplexEdge& mark) {
-                         return mark.kind == films::VertexKind::OnCurve &&
-                                result_.curves[mark.curve].free;
-                       });
-    result_.edges.erase(last, result_.edges.end());
   }
 
   /// Before they are filled: their flat areas alone tell edges that are far too

@@ -251,11 +251,16 @@ void refine_curves(const Case& input, films::FilmSystem& system) {
       system.curves[k].fineness = std::min(1.0, pieces / input.resolution.fea);
     }
     system.curves[k].free = input.curves[k].free;
+    system.curves[k].free_sides = input.curves[k].free_sides;
   }
   for (const MergedCurves& pair : input.merged) {  // one that is held holds
     curves::Curve& kept = system.curves[static_cast<std::size_t>(pair.kept)];
-    kept.free =
-        kept.free && input.curves[static_cast<std::size_t>(pair.dropped)].free;
+    const CurveEntry& dropped =
+        input.curves[static_cast<std::size_t>(pair.dropped)];
+    kept.free = kept.free && dropped.free;
+    if (dropped.free_sides != kept.free_sides) {
+      kept.free_sides.clear();
+    }
   }
   constexpr double kPiece = 1.0 / 3.0;  // of the radius: four to a quarter turn
   for (const films::FilletSpec& fillet : system.fillets) {
@@ -511,6 +516,7 @@ EvaluatedCase evaluate(const Case& input, const VectorX& design,
       check_nesting(input, result.film_system, design, problems);
     }
     check_sides(input, result.film_system, values);
+    check_free_sides(input, result.film_system, values);
     check_places(input, result, values);
     check_on_walls(input, result.film_system, values);
     check_symmetry(input, result, values);

@@ -120,7 +120,7 @@ void check_free_curves(const Case& input, CaseProblems& problems) {
         input.merged.begin(), input.merged.end(), [&](const MergedCurves& m) {
           return &input.curves[static_cast<std::size_t>(m.dropped)] == &curve;
         });
-    if (!curve.free || is_dropped) {
+    if (is_dropped || (!curve.free && curve.free_sides.empty())) {
       continue;
     }
     const auto names_it = [&](const std::vector<std::string>& names) {
@@ -129,7 +129,9 @@ void check_free_curves(const Case& input, CaseProblems& problems) {
     const auto films = std::count_if(
         input.films.begin(), input.films.end(),
         [&](const FilmEntry& film) { return names_it(film.spec.curves); });
-    if (films < 3) {
+    const bool has_sides =
+        curve.kind == CurveKind::Polygon || curve.kind == CurveKind::Polyline;
+    if (films < 3 && !has_sides) {  // of sides with others', by their places
       problems.add(
           curve.line,
           fmt::format("curve '{}' is free and {} film{} there; lines "

@@ -149,6 +149,49 @@ bool may_join_by_sides(const Case& input, const std::string& curve) {
   return sided.count(curve) != 0 && rims.size() > 2;
 }
 
+void check_free_sides(const Case& input, const films::FilmSystem& system,
+                      const CaseValues& values) {
+  const std::map<SideName, SideName> first =
+      first_of(films::shared_sides(system.curves));
+  std::map<SideName, std::set<std::string>> films;  // by the first's side
+  for (const films::FilmSpec& film : system.films) {
+    for (const auto& [side, names] :
+         surfaces_at_sides(system, {.enclosed_by = {film.name}}, first)) {
+      films[side].insert(names.begin(), names.end());
+    }
+  }
+  for (std::size_t c = 0; c < system.curves.size(); ++c) {
+    const curves::Curve& curve = system.curves[c];
+    const bool is_used =
+        std::any_of(system.films.begin(), system.films.end(),
+                    [&](const films::FilmSpec& film) {
+                      return std::find(film.curves.begin(), film.curves.end(),
+                                       curve.name) != film.curves.end();
+                    });
+    const std::vector<films::CurveSide> sides = films::sides_of(curve.shape);
+    for (std::size_t k = 0; k < sides.size() && is_used; ++k) {
+      const bool is_free =
+          curve.free ||
+          std::count(curve.free_sides.begin(), curve.free_sides.end(), k) > 0;
+      const SideName own(static_cast<int>(c), static_cast<int>(k));
+      const auto at = first.find(own);
+      const std::set<std::string>& there =
+          films[at == first.end() ? own : at->second];
+      if (is_free && there.size() < 3) {
+        values.problems().push_back(fmt::format(
+            "{}: the side from {} to {} of curve '{}' is free, and {} film{} "
+            "there{}{}; lines balance where three films or more meet: let more "
+            "end at that side, or hold it",
+            place(input, input.curves[c].line), text(sides[k].from),
+            text(sides[k].to), curve.name, there.size(),
+            there.size() == 1 ? " ends" : "s end", there.empty() ? "" : ", ",
+            fmt::join(there, ", ")));
+        break;
+      }
+    }
+  }
+}
+
 void check_sides(const Case& input, const films::FilmSystem& system,
                  const CaseValues& values) {
   const std::map<SideName, SideName> first =

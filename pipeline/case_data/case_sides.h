@@ -13,6 +13,11 @@ namespace meniscus::case_data {
 /// wedge do.
 bool may_join_by_sides(const Case& input, const std::string& curve);
 
+/// Tells of free sides of polygons and polylines where fewer than three films
+/// meet, or a solid's face.
+void check_free_sides(const Case& input, const films::FilmSystem& system,
+                      const CaseValues& values);
+
 /// Tells of bodies whose faces leave a curve's side open, or meet there more
 /// than two at a time.
 void check_sides(const Case& input, const films::FilmSystem& system,

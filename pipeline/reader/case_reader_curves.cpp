@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <cstdint>
+
 #include <fmt/format.h>
 
 #include "pipeline/reader/case_reader_tables.h"
@@ -142,6 +145,42 @@ void read_copy(CaseContext& context, const CaseTable& table,
   read_motion(context, table, curve);
 }
 
+/// true, or some sides of a polygon or polyline, counted from 1.
+void read_free(CaseContext& context, const CaseTable& table,
+               case_data::CurveEntry& curve) {
+  const toml::node* node = table.node("free");
+  const toml::array* list = node == nullptr ? nullptr : node->as_array();
+  if (list == nullptr) {
+    curve.free = table.flag("free").value_or(false);
+    return;
+  }
+  const bool has_sides = curve.fixed_points.empty() &&
+                         (curve.kind == case_data::CurveKind::Polygon ||
+                          curve.kind == case_data::CurveKind::Polyline);
+  const auto sides =
+      has_sides ? std::count_if(curve.points.begin(), curve.points.end(),
+                                [](const case_data::PathPoint& point) {
+                                  return !point.through;
+                                })
+                : 0;
+  for (const toml::node& item : *list) {
+    const auto side = item.value_exact<std::int64_t>();
+    if (!side || *side < 1 || *side > sides) {
+      context.problems.add(
+          context.line_of(item),
+          has_sides
+              ? fmt::format("{}.free has {}; its sides are 1 to {}, side 1 "
+                            "from the first point to the next",
+                            table.path(), described(item), sides)
+              : fmt::format("{}.free lists sides, which polygons and "
+                            "polylines have; expected true or false",
+                            table.path()));
+      return;
+    }
+    curve.free_sides.push_back(static_cast<int>(*side) - 1);
+  }
+}
+
 case_data::CurveEntry read_curve(CaseContext& context, const CaseTable& table,
                                  const toml::table& root,
                                  case_data::Case& result) {
@@ -150,7 +189,6 @@ case_data::CurveEntry read_curve(CaseContext& context, const CaseTable& table,
   if (!kind) {
     return curve;
   }
-  curve.free = table.flag("free").value_or(false);
   if (table.has("pieces")) {
     curve.pieces = constant_above(context, table, "pieces", 0.0, 1.0);
   }
@@ -159,10 +197,12 @@ case_data::CurveEntry read_curve(CaseContext& context, const CaseTable& table,
   curve.kind = row.kind;
   if (*kind == "copy") {
     read_copy(context, table, root, result, curve);
+    read_free(context, table, curve);
     return curve;
   }
   if (*kind == "file") {
     read_curve_file(context, table, result, curve);
+    read_free(context, table, curve);
     return curve;
   }
   curve.center = table.vector_or_zero("center");
@@ -176,6 +216,7 @@ case_data::CurveEntry read_curve(CaseContext& context, const CaseTable& table,
   curve.corner_radius = table.quantity_or_zero("corner_radius");
   curve.points = table.path_points("points");
   check_path(context, table, curve);
+  read_free(context, table, curve);
   return curve;
 }
 
@@ -244,9 +285,10 @@ TableSpec curve_table() {
         "edges along it, where stress is to be resolved: films and elements "
         "grow from there by 0.4 of the distance; at most resolution.fea, which "
         "it is when left out"},
-       {"free", K::Flag, D::None, false,
+       {"free", K::Sides, D::None, false,
         "three films or more begin along it, and their line moves to where "
-        "they balance; false when left out"},
+        "they balance; of polygon and polyline also some sides alone, side 1 "
+        "from the first point to the next: [2, 3]. false when left out"},
        {"of", K::Name, D::None, false, "of copy: a curve that stands above"},
        {"offset", K::Quantity, D::Length, false,
         "of copy: outwards in the curve's plane, below 0 inwards; corners "

@@ -22,6 +22,7 @@ enum class KeyType {
   Counts,          // one to three integers
   Shape,           // the same, as numbers alone
   Flag,            // true or false
+  Sides,           // the same, or an array of integers
   Quantity,        // number, expression or "value unit"
   Quantities,      // one, or an array of them
   Constant,        // a quantity that no design variable moves

@@ -33,6 +33,8 @@ const char* type_text(const KeySpec& key) {
       return "integers";
     case K::Flag:
       return "true or false";
+    case K::Sides:
+      return "true, false or sides";
     case K::Quantity:
       return "quantity";
     case K::Quantities:
@@ -93,8 +95,9 @@ const char* dimension_text(const KeySpec& key) {
       key.type != K::Names && key.type != K::NameOrNames &&
       key.type != K::NamesOrNumbers && key.type != K::Integer &&
       key.type != K::Counts && key.type != K::Shape && key.type != K::Facets &&
-      key.type != K::Flag && key.type != K::IntegerMap &&
-      key.type != K::Supports && key.type != K::Loads && key.type != K::Zones &&
+      key.type != K::Flag && key.type != K::Sides &&
+      key.type != K::IntegerMap && key.type != K::Supports &&
+      key.type != K::Loads && key.type != K::Zones &&
       key.type != K::Spheroids && key.type != K::Planes &&
       key.type != K::Constraints && key.type != K::Members;
   if (key.type == K::ConstantMap) {
@@ -217,6 +220,10 @@ Json type_schema(const KeySpec& key) {
     }
     case K::Flag:
       return {{"type", "boolean"}};
+    case K::Sides:
+      return {{"anyOf",
+               {{{"type", "boolean"}},
+                array({{"type", "integer"}, {"minimum", 1}}, 1, 0)}}};
     case K::Quantity:
     case K::Constant:
     case K::Place:

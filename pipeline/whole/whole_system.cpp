@@ -80,7 +80,7 @@ class SystemMirror {
         copy.mirror = plane_.normal;
         copy.about = plane_.at;
         system_.curves.push_back(
-            {image(curve.name), copy, curve.fineness, curve.free});
+            {image(curve.name), copy, curve.fineness, curve.free, {}});
       }
     }
   }

@@ -112,6 +112,59 @@ buckling = 0
 [resolution]
 fea = {edge}
 """
+# Three plates about an axis that finds its place between two points.
+PLATES = """title = "Plates about an axis"
+units = "mm-N-MPa"
+
+[design.lean]
+initial = 4.0
+bounds = [-10.0, 10.0]
+
+[curves.plate]
+repeat = 3
+kind = "polygon"
+points = [
+  [0, 0, 0],
+  [0, 0, 40],
+  ["30 * cos(2 * pi / 3 * {i}) + lean", "30 * sin(2 * pi / 3 * {i})", 40],
+  ["30 * cos(2 * pi / 3 * {i})", "30 * sin(2 * pi / 3 * {i}) + lean", 0],
+]
+free = [1]
+
+[films.plate]
+repeat = 3
+kind = "disk"
+curves = ["plate_{i}"]
+
+[walls.plates]
+films = [{ name = "plate_{i}", repeat = 3 }]
+thickness = 3
+fillet = 2
+material = "steel"
+
+[materials.steel]
+youngs_modulus = 210000
+poisson_ratio = 0.3
+density = "7850 kg/m^3"
+
+[load_cases.service]
+supports = [{ on = "plate_1/rim:plate_1", fix = "xyz" }]
+loads = [{ on = "plate_2", pressure = 0.1 }]
+
+[responses.mass]
+kind = "mass"
+
+[responses.dip]
+kind = "mean_displacement"
+on = "plate_3/back"
+direction = [1, 0, 0]
+
+[analysis]
+buckling = 0
+
+[resolution]
+fea = 6
+"""
 HALF = """
 [symmetry]
 planes = [{ at = [0, 0, 0], normal = [0, -1, 0] }]
@@ -199,6 +252,12 @@ class FreeLines(ProgramTest):
                             0.05)
         self.expect(self.call("check-gradient", case), 0)
 
+    def test_plates_meet_along_a_free_side(self):
+        result = self.run_at(PLATES, "plates")
+        self.assertEqual(result["film"]["index"], 0)
+        self.expect(self.call("check-gradient", self.folder / "plates.toml"),
+                    0)
+
     def test_what_a_line_cannot_bear_is_refused_with_the_place(self):
         two = PIPE.replace("radius = 26\n", "radius = 26\nfree = true\n")
         at, end = two.index("[films.plate]"), two.index("[walls.pipe]")
@@ -210,7 +269,16 @@ class FreeLines(ProgramTest):
                               '["lower", "lid", "foot_pad"]').replace(
             "[bodies.down]",
             '[solids.lid]\nkind = "cap"\ncurve = "line"\n\n[bodies.down]')
+        plates = two_plates = PLATES
+        plates = plates.replace("free = [1]", "free = [5]")
+        two_plates = two_plates.replace("repeat = 3", "repeat = 2").replace(
+            "plate_3", "plate_2")
         for text, table, message in (
+                (plates, "free = [5]",
+                 r"curves.plate_1.free has 5; its sides are 1 to 4"),
+                (two_plates, "[curves.plate]",
+                 r"the side from \(0, 0, 0\) to \(0, 0, 40\) of curve "
+                 "'plate_1' is free, and 2 films end there, plate_1, plate_2"),
                 (two, "[curves.waist]",
                  "curve 'waist' is free and 2 films end there"),
                 (lid, "[solids.lid]",

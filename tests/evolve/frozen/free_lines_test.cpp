@@ -289,6 +289,74 @@ TEST(FreeLine, EndsAtAPlaneOfSymmetry) {
               whole.settle(at(away, false)).report.energy, 2e-3);
 }
 
+/// Six films from the edges of a tetrahedron to a point that nothing holds,
+/// with one corner off its place.
+films::FilmSystem tetrahedron(const Vec3& middle, const Vec3& off) {
+  const Points corners = {Vec3(1, 1, 1) + off, Vec3(1, -1, -1), Vec3(-1, 1, -1),
+                          Vec3(-1, -1, 1)};
+  films::FilmSystem system;
+  for (int a = 0; a < 4; ++a) {
+    for (int b = a + 1; b < 4; ++b) {
+      const std::string name = std::to_string(a) + std::to_string(b);
+      system.curves.push_back(
+          {name, curves::Polygon{{corners[a], corners[b], middle}}});
+      system.curves.back().free_sides = {1, 2};
+      system.films.push_back({name, films::FilmKind::Disk, {name}, 1.0});
+    }
+  }
+  return system;
+}
+
+// Flat films have no error: six triangles of edge^2 / (4 sqrt 2), four lines
+// that meet at the centre.
+TEST(FreeSide, FramesOfATetrahedronMeetAtItsCentre) {
+  const frozen::FilmModel model = frozen::FilmModel::freeze(
+      tetrahedron(Vec3(0.1, -0.05, 0.12), Vec3::Zero()),
+      {.edge = 0.4, .refinements = 1});
+  const settle::FilmState& found = model.reference();
+  ASSERT_FALSE(found.failure) << found.failure->message;
+  EXPECT_EQ(found.report.index, 0);
+  const double edge2 = 8.0;
+  EXPECT_NEAR(found.report.energy, 6.0 * edge2 / (4.0 * std::sqrt(2.0)), 1e-9);
+  double nearest = 9.0;
+  for (const Vec3& p : found.points) {
+    nearest = std::min(nearest, p.norm());
+  }
+  EXPECT_LT(nearest, 1e-9);
+}
+
+TEST(FreeSide, MovesWithTheCornerThatTheDesignMoves) {
+  const Vec3 middle(0.05, 0.0, 0.0);
+  const frozen::FilmModel model = frozen::FilmModel::freeze(
+      tetrahedron(middle, Vec3::Zero()), {.edge = 0.3, .refinements = 1});
+  ASSERT_FALSE(model.reference().failure);
+  const Vec3 off(0.5, 0.2, -0.3);
+  const films::FilmSystem there = tetrahedron(middle, off);
+  const settle::FilmState moved = model.settle(there);
+  ASSERT_FALSE(moved.failure) << moved.failure->message;
+  const frozen::FilmModel anew =
+      frozen::FilmModel::freeze(there, {.edge = 0.3, .refinements = 1});
+  EXPECT_NEAR(moved.report.energy / anew.reference().report.energy, 1.0, 1e-4);
+  const frozen::FilmGradient gradient =
+      model.transpose(moved, there, {{.energy = 1.0}})[0];
+  for (int k = 0; k < 3; ++k) {
+    constexpr double kStep = 1e-5;
+    const Vec3 step = kStep * Vec3::Unit(k);
+    const double slope =
+        (model.settle(tetrahedron(middle, off + step)).report.energy -
+         model.settle(tetrahedron(middle, off - step)).report.energy) /
+        (2.0 * kStep);
+    films::FilmSystem moving = tetrahedron(Vec3::Zero(), Vec3::Zero());
+    for (std::size_t c = 0; c < moving.curves.size(); ++c) {
+      moving.curves[c].shape =
+          curves::Polygon{{c < 3 ? Vec3(Vec3::Unit(k)) : Vec3(Vec3::Zero()),
+                           Vec3::Zero(), Vec3::Zero()}};
+      moving.films[c].tension = 0.0;
+    }
+    EXPECT_NEAR(model.rate(gradient, there, moving), slope, 1e-7);
+  }
+}
+
 // Where the curve was drawn has no say.
 TEST(FreeLine, ForgetsWhereItBegan) {
   const frozen::FilmModel model = frozen::FilmModel::freeze(
