@@ -1,10 +1,12 @@
 #include "evolve/walls/wall_films.h"
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include <Eigen/Geometry>
 
+#include "core/geometry/edge_key.h"
 #include "evolve/walls/rim_shape.h"
 #include "evolve/walls/wall_reference.h"
 
@@ -49,7 +51,26 @@ Vec3 middle_of_rim(const films::FilmSystem& system, const std::string& film,
       }
     }
   }
-  return sum / count;
+  if (count > 0) {
+    return sum / count;
+  }
+  // Its curves are free: where its facets end.
+  std::map<Edge, int> facets;
+  const SurfaceMesh all = model.meshed_facets();
+  for (std::size_t f = 0; f < all.facets.size(); ++f) {
+    const Triangle& t = all.facets[f];
+    for (int k = 0; k < 3 && all.labels[all.facet_label[f]] == film; ++k) {
+      ++facets[edge_key(t[k], t[(k + 1) % 3])];
+    }
+  }
+  for (const auto& [edge, uses] : facets) {
+    if (uses == 1) {
+      sum += points[static_cast<std::size_t>(edge[0])] +
+             points[static_cast<std::size_t>(edge[1])];
+      count += 2;
+    }
+  }
+  return sum / std::max(count, 1);
 }
 
 /// Per wall that at the first of its points.

@@ -253,15 +253,6 @@ void refine_curves(const Case& input, films::FilmSystem& system) {
     system.curves[k].free = input.curves[k].free;
     system.curves[k].free_sides = input.curves[k].free_sides;
   }
-  for (const MergedCurves& pair : input.merged) {  // one that is held holds
-    curves::Curve& kept = system.curves[static_cast<std::size_t>(pair.kept)];
-    const CurveEntry& dropped =
-        input.curves[static_cast<std::size_t>(pair.dropped)];
-    kept.free = kept.free && dropped.free;
-    if (dropped.free_sides != kept.free_sides) {
-      kept.free_sides.clear();
-    }
-  }
   constexpr double kPiece = 1.0 / 3.0;  // of the radius: four to a quarter turn
   for (const films::FilletSpec& fillet : system.fillets) {
     for (curves::Curve& curve : system.curves) {

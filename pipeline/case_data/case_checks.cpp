@@ -139,6 +139,13 @@ void check_free_curves(const Case& input, CaseProblems& problems) {
                       "more end there, or hold it (free = false)",
                       curve.name, films, films == 1 ? " ends" : "s end"));
     }
+    if (curve.pieces > 0.0) {
+      problems.add(curve.line,
+                   fmt::format("curve '{}' has pieces and is free: edges along "
+                               "a line that moves are the films'; take pieces "
+                               "out, or hold it (free = false)",
+                               curve.name));
+    }
     for (const CapEntry& cap : input.caps) {
       if (names_it(cap.spec.curves())) {
         problems.add(
@@ -732,7 +739,10 @@ std::vector<std::string> wall_surface_names(const Case& input) {
       }
       names.push_back(film.spec.name + "/back");
       for (const std::string& curve : film.spec.curves) {
-        if (uses[curve] == 1) {
+        const bool is_free = std::any_of(
+            input.curves.begin(), input.curves.end(),
+            [&](const CurveEntry& c) { return c.free && c.name == curve; });
+        if (uses[curve] == 1 && !is_free) {
           names.push_back(film.spec.name + "/rim:" + curve);
         }
       }

@@ -114,7 +114,7 @@ struct CurveEntry {
   double pieces = 0.0;  // length that it is cut into [length]; 0: the films'
   bool free = false;    // films begin along it and move on
   std::vector<int> free_sides = {};  // or along these of its sides, from 0
-  int feature = -1;     // index of the feature, and of its curves
+  int feature = -1;                  // index of the feature, and of its curves
   int of_feature = -1;
   SourceLine line = 0;
 };

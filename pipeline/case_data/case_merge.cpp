@@ -121,6 +121,22 @@ std::set<std::string> held_curves(const Case& input) {
   return held;
 }
 
+namespace {
+
+/// True where curves in one place are free in part: they hold.
+bool hold_if_one_holds(CurveEntry& one, CurveEntry& other) {
+  const bool differ = one.free != other.free || !one.free_sides.empty() ||
+                      !other.free_sides.empty();
+  if (differ) {
+    one.free = other.free = false;
+    one.free_sides.clear();
+    other.free_sides.clear();
+  }
+  return differ;
+}
+
+}  // namespace
+
 void merge_curves(Case& input, CaseProblems& problems) {
   std::vector<std::string> found;
   std::vector<curves::Curve> curves;
@@ -142,15 +158,18 @@ void merge_curves(Case& input, CaseProblems& problems) {
     if (first[c] == static_cast<int>(c)) {
       continue;
     }
-    const CurveEntry& one = input.curves[static_cast<std::size_t>(first[c])];
-    const CurveEntry& other = input.curves[c];
+    CurveEntry& one = input.curves[static_cast<std::size_t>(first[c])];
+    CurveEntry& other = input.curves[c];
     input.merged.push_back({first[c], static_cast<int>(c)});
     kept[other.name] = one.name;
     input.remarks.push_back(fmt::format(
         "{}: curve '{}' lies on '{}' within {:.2g} {}: one curve, which films "
-        "and solids know as '{}'",
+        "and solids know as '{}'{}",
         place(input, other.line), other.name, one.name,
-        distance[static_cast<int>(c)], unit, one.name));
+        distance[static_cast<int>(c)], unit, one.name,
+        hold_if_one_holds(one, other) ? "; it holds films, as one of the two "
+                                        "is not free"
+                                      : ""));
   }
   if (kept.empty()) {
     return;

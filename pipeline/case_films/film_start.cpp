@@ -134,6 +134,9 @@ frozen::FilmModel freeze_films(const case_data::Case& input,
     return model;
   } catch (const InvalidInput& error) {
     const std::string message = error.what();
+    if (message.compare(0, input.path.size(), input.path) == 0) {
+      throw;  // has its place
+    }
     throw InvalidInput(fmt::format(
         "{}: {}", place(input, case_data::line_of_start(input, message)),
         message));

@@ -5,6 +5,8 @@
 #include <string>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "core/error.h"
 #include "pipeline/case_data/case_values.h"
 
@@ -58,8 +60,13 @@ Waypoint waypoint_at(const case_data::Case& input, VectorX values) {
 std::vector<Waypoint> film_way(const case_data::Case& input,
                                const case_data::EvaluatedCase& inputs) {
   std::vector<Waypoint> way;
-  for (const VectorX& values : input.way) {
-    way.push_back(waypoint_at(input, values));
+  try {
+    for (const VectorX& values : input.way) {
+      way.push_back(waypoint_at(input, values));
+    }
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(
+        fmt::format("{} (at the values of 'start')", error.what()));
   }
   for (const VectorX& design : input.earlier_freezes) {
     way.push_back(

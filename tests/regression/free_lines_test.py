@@ -258,6 +258,48 @@ class FreeLines(ProgramTest):
         self.expect(self.call("check-gradient", self.folder / "plates.toml"),
                     0)
 
+    # A film that free curves alone bound has its inside where it ends, however
+    # its first facets ran.
+    def test_a_film_of_free_curves_has_an_inside(self):
+        free = PIPE.replace("radius = 26\n", "radius = 26\nfree = true\n")
+        body = """
+[solids.lid]
+kind = "cap"
+curve = "{}"
+
+[bodies.room]
+enclosed_by = ["{}", "plate", "lid"]
+pressure = 0.02
+material = "void"
+"""
+        dips = []
+        for chamber in (("base", "low"), ("head", "high")):
+            text = free.replace('on = "plate", pressure',
+                                'on = "plate/outside", pressure').replace(
+                'on = "plate/back"', 'on = "plate/outside"')
+            text = text.replace("[walls.pipe]",
+                                body.format(*chamber) + "\n[walls.pipe]")
+            dips.append(self.run_at(text, chamber[0])["responses"]["dip"])
+        self.assertLess(dips[0] * dips[1], 0, dips)
+
+    def test_curves_in_one_place_hold_where_one_does(self):
+        again = ('[curves.again]\nkind = "circle"\ncenter = [{x}, 0, {z}]\n'
+                 "normal = [0, 0, 1]\nradius = 27\n\n[curves.line]")
+        numbers = re.search(r"center = \[(\S+), 0, (\S+)\]\nnormal = "
+                            r"\[0, 0, 1\]\nradius = 27", tube(0)).groups()
+        text = tube(0).replace("[curves.line]", again.format(
+            x=numbers[0], z=numbers[1])).replace(
+            'curves = ["line"]', 'curves = ["again"]')
+        self.expect(self.call("check", self.case(text)), 0,
+                    "one curve.*it holds films, as one of the two is not free")
+
+    def test_the_start_that_has_no_film_is_named(self):
+        text = tube(0).replace('units = "mm-N-MPa"',
+                               'units = "mm-N-MPa"\nstart = { foot = -5 }')
+        done = self.expect(self.call("evolve", self.case(text)), 2,
+                           "at the values of 'start'")
+        self.assertNotRegex(done.stderr, r"case\.toml: \S*case\.toml")
+
     def test_what_a_line_cannot_bear_is_refused_with_the_place(self):
         two = PIPE.replace("radius = 26\n", "radius = 26\nfree = true\n")
         at, end = two.index("[films.plate]"), two.index("[walls.pipe]")
@@ -282,7 +324,9 @@ class FreeLines(ProgramTest):
                 (two, "[curves.waist]",
                  "curve 'waist' is free and 2 films end there"),
                 (lid, "[solids.lid]",
-                 "solid 'lid' ends at curve 'line', which is free")):
+                 "solid 'lid' ends at curve 'line', which is free"),
+                (tube(0).replace("free = true", "free = true\npieces = 2"),
+                 "[curves.line]", "curve 'line' has pieces and is free")):
             place = text.split("\n").index(table) + 1
             self.expect(self.call("check", self.case(text)), 2,
                         f"case.toml:{place}: {message}")
