@@ -40,7 +40,6 @@ class FreePlaces {
   FreePlaces(const std::vector<curves::Curve>& curves,
              const std::vector<char>& used);
 
-  bool any() const { return any_; }
   bool is_side_free(int curve, int side) const {
     return sides_[static_cast<std::size_t>(curve)]
                  [static_cast<std::size_t>(side)] != 0;

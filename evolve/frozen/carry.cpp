@@ -227,12 +227,11 @@ Carry::Carry(const films::FilmComplex& reference, const std::vector<int>& lines,
       given_(reference.vertices.size(), 0) {
   const std::vector<char> none(reference.vertices.size(), 0);
   films_ = extend(reference, Part::Films, none, film_order);
-  for (const int v : films_.vertices) {
-    given_[v] = 1;
-  }
   std::copy_if(lines.begin(), lines.end(), std::back_inserter(lines_),
-               [&](int v) { return given_[v] != 0; });
-  given_ = none;
+               [&](int v) {  // these are in order
+                 return std::binary_search(films_.vertices.begin(),
+                                           films_.vertices.end(), v);
+               });
   for (const int v : lines_) {
     given_[v] = 1;
   }

@@ -449,11 +449,8 @@ Points FilmModel::Impl::base_at(const Points& rim_moves,
   }
   FilmAdjoint::Rates to_goal = lead->differences(goal);
   to_goal.base = carry->rates_over_lines(rim_moves);
-  Points moves = rim_moves;
-  const Points of_lines = lead->moves(to_goal);
-  for (const int v : lead->lines()) {
-    moves[v] = of_lines[v];
-  }
+  Points moves = lead->moves(to_goal);
+  flat(moves) += flat(rim_moves);
   return carry->at(moves, fraction);
 }
 

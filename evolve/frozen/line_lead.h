@@ -28,8 +28,6 @@ class LineLead {
   LineLead(const LineLead&) = delete;
   LineLead& operator=(const LineLead&) = delete;
 
-  const std::vector<int>& lines() const { return lines_; }
-
   /// From the reference's numbers to `goal`, without the base.
   FilmAdjoint::Rates differences(const films::FilmTargets& goal) const;
 

@@ -120,7 +120,7 @@ void check_free_curves(const Case& input, CaseProblems& problems) {
         input.merged.begin(), input.merged.end(), [&](const MergedCurves& m) {
           return &input.curves[static_cast<std::size_t>(m.dropped)] == &curve;
         });
-    if (is_dropped || (!curve.free && curve.free_sides.empty())) {
+    if (is_dropped || !curve.is_free_somewhere()) {
       continue;
     }
     const auto names_it = [&](const std::vector<std::string>& names) {

@@ -117,6 +117,8 @@ struct CurveEntry {
   int feature = -1;                  // index of the feature, and of its curves
   int of_feature = -1;
   SourceLine line = 0;
+
+  bool is_free_somewhere() const { return free || !free_sides.empty(); }
 };
 
 /// Two curves in one place, indices of curves: one for films and solids.

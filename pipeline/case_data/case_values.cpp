@@ -16,20 +16,18 @@ namespace {
 /// The name itself, or of an element "t[2,3]" another, unlike all of the case
 /// and all of `taken`: no index of it is to be checked again.
 std::string plain_name(const Case& input, const std::string& name,
-                       const std::vector<std::string>& names,
                        const std::vector<std::string>& taken) {
   if (name.find('[') == std::string::npos) {
     return name;
   }
   std::string plain = fmt::format("n{}", taken.size());
-  const auto is_among = [&](const std::vector<std::string>& all) {
-    return std::find(all.begin(), all.end(), plain) != all.end();
+  const auto is_plain = [&](const auto& entry) { return entry.name == plain; };
+  const auto has_plain = [&](const auto& entries) {
+    return std::any_of(entries.begin(), entries.end(), is_plain);
   };
-  const auto is_shape = [&](const ShapeEntry& entry) {
-    return entry.name == plain;
-  };
-  while (is_among(names) || is_among(taken) ||
-         std::any_of(input.shapes.begin(), input.shapes.end(), is_shape)) {
+  while (has_plain(input.design) || has_plain(input.parameters) ||
+         has_plain(input.shapes) ||
+         std::find(taken.begin(), taken.end(), plain) != taken.end()) {
     plain += '_';
   }
   return plain;
@@ -174,7 +172,7 @@ PlaceField CaseValues::place_field(const PlaceQuantity& place_quantity) const {
       }
     } else if (follows(name)) {
       before.push_back(name_of(k));
-      after.push_back(plain_name(input_, name_of(k), names(), after));
+      after.push_back(plain_name(input_, name_of(k), after));
       result.names.push_back(after.back());
       numbers.push_back(are_rates() ? rate_of(duals_[k]) : values_[k]);
     } else if (k < values_.size()) {

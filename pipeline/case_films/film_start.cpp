@@ -118,8 +118,8 @@ case_data::Case frozen_at(case_data::Case input, const VectorX& design) {
 frozen::FilmModel freeze_films(const case_data::Case& input,
                                const case_data::EvaluatedCase& inputs,
                                const frozen::FilmModelOptions& options) {
+  const std::vector<Waypoint> way = film_way(input, inputs);
   try {
-    const std::vector<Waypoint> way = film_way(input, inputs);
     frozen::FilmModel model =
         frozen::FilmModel::freeze(way.front().system, options);
     for (std::size_t k = 1; k < way.size(); ++k) {
@@ -134,9 +134,6 @@ frozen::FilmModel freeze_films(const case_data::Case& input,
     return model;
   } catch (const InvalidInput& error) {
     const std::string message = error.what();
-    if (message.compare(0, input.path.size(), input.path) == 0) {
-      throw;  // has its place
-    }
     throw InvalidInput(fmt::format(
         "{}: {}", place(input, case_data::line_of_start(input, message)),
         message));

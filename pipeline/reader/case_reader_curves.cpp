@@ -197,12 +197,10 @@ case_data::CurveEntry read_curve(CaseContext& context, const CaseTable& table,
   curve.kind = row.kind;
   if (*kind == "copy") {
     read_copy(context, table, root, result, curve);
-    read_free(context, table, curve);
     return curve;
   }
   if (*kind == "file") {
     read_curve_file(context, table, result, curve);
-    read_free(context, table, curve);
     return curve;
   }
   curve.center = table.vector_or_zero("center");
@@ -216,7 +214,6 @@ case_data::CurveEntry read_curve(CaseContext& context, const CaseTable& table,
   curve.corner_radius = table.quantity_or_zero("corner_radius");
   curve.points = table.path_points("points");
   check_path(context, table, curve);
-  read_free(context, table, curve);
   return curve;
 }
 
@@ -310,6 +307,7 @@ void read_curves(CaseContext& context, const toml::table& root,
                  case_data::Case& result) {
   for (const CaseTable& table : named_tables(context, root, "curves")) {
     result.curves.push_back(read_curve(context, table, root, result));
+    read_free(context, table, result.curves.back());
   }
 }
 

@@ -287,10 +287,8 @@ void check_rim_shapes(CaseContext& context, const case_data::Case& result) {
       const auto at = std::find(known.begin(), known.end(), curve);
       if (at == known.end()) {
         context.problems.unknown(entry.line, "curve", curve, known);
-      } else if (const case_data::CurveEntry& at_rim =
-                     result
-                         .curves[static_cast<std::size_t>(at - known.begin())];
-                 at_rim.free || !at_rim.free_sides.empty()) {
+      } else if (result.curves[static_cast<std::size_t>(at - known.begin())]
+                     .is_free_somewhere()) {
         context.problems.add(
             entry.line,
             fmt::format("shapes.{} begins or ends at curve '{}', which is "
