@@ -11,22 +11,23 @@
 #include <Eigen/Geometry>
 
 #include "core/geometry/edge_key.h"
-#include "core/math/union_find.h"
-#include "evolve/walls/wall_offset.h"
+#include "evolve/walls/facet_probe.h"
+#include "evolve/walls/wall_slide.h"
 
 namespace meniscus::walls {
 
 namespace {
 
-constexpr double kOpen = 0.05;     // cosine of half the sector: less is convex
-constexpr double kLongest = 20.0;  // of (half thickness + radius): reach
-constexpr double kReach = 2.0;     // of where the arc begins
+constexpr double kOpen = 0.05;     // sine of a sector, cosine of its half:
+                                   // less is convex
+constexpr double kLongest = 20.0;  // of (offset + radius): reach
+constexpr double kReach = 3.0;     // of the longest slide
 
 /// One side of a sheet at a junction: plane and direction into the sheet.
 struct SideFrame {
   Vec3 normal = Vec3::Zero();  // sum of the facets' unit normals
   Vec3 inward = Vec3::Zero();
-  double half = 0.0;    // thickness, mean [length]
+  double offset = 0.0;  // from the film, mean [length]
   double fillet = 0.0;  // largest [length]
   int count = 0;
 };
@@ -45,7 +46,6 @@ struct SectorEdge {
   Edge point = {};
   int other_sheet = 0;
   int other_side = 0;
-  int line = 0;
 };
 
 class Fillets {
@@ -56,9 +56,9 @@ class Fillets {
   Points find() {
     moves_.assign(in_.topology.points.size(), Vec3::Zero());
     find_edges();
-    number_lines();
     find_sectors();
-    for (int sheet = 0; sheet < in_.sheets.count; ++sheet) {
+    const auto sheets = static_cast<int>(in_.sheets.offset.size());
+    for (int sheet = 0; sheet < sheets; ++sheet) {
       for (const int side : {0, 1}) {
         round_sheet(sheet, side);
       }
@@ -81,48 +81,27 @@ class Fillets {
     const int k = corner_of(f, v);
     return side == 0 ? facet(f).front[k] : facet(f).back[k];
   }
-  double half_of(int f, int v) const {
-    return 0.5 * in_.asked(in_.films.wall[facet(f).label], v);
+  const WallSpec& spec_of(int f) const {
+    return in_.walls[in_.films.wall[facet(f).label]];
+  }
+  double asked(int f, int v) const {
+    return in_.asked(in_.films.wall[facet(f).label], v);
+  }
+  // How far a facet's side lies from the film.
+  double offset_of(int f, int side, int v) const {
+    const WallShares part = shares(spec_of(f).side);
+    return (side == 0 ? part.front : part.back) * asked(f, v);
   }
   double fillet_of(int f, int v) const {
-    const WallSpec& wall = in_.walls[in_.films.wall[facet(f).label]];
-    return wall.fillet.value_or(half_of(f, v));
+    return spec_of(f).fillet.value_or(0.5 * asked(f, v));
   }
 
   void find_edges() {
-    std::map<Edge, std::vector<int>> users;
-    for (int f = 0; f < static_cast<int>(in_.topology.facets.size()); ++f) {
-      const Triangle& t = facet(f).film;
-      for (int k = 0; k < 3; ++k) {
-        const int a = t[k];
-        const int b = t[(k + 1) % 3];
-        if (in_.topology.junction[a] != 0 && in_.topology.junction[b] != 0) {
-          users[edge_key(a, b)].push_back(f);
-        }
-      }
-    }
-    for (const auto& [edge, facets] : users) {
-      if (facets.size() > 2) {
+    for (const auto& [edge, facets] : facets_about_edges(in_.topology.facets)) {
+      if (is_junction(in_.topology.facets, facets)) {
         edges_.emplace_back(edge, facets);
       }
     }
-  }
-
-  // Edges in a row, up to where lines meet or end.
-  void number_lines() {
-    std::map<int, std::vector<int>> at;
-    for (std::size_t e = 0; e < edges_.size(); ++e) {
-      for (const int v : edges_[e].first) {
-        at[v].push_back(static_cast<int>(e));
-      }
-    }
-    UnionFind lines(edges_.size());
-    for (const auto& [v, edges] : at) {
-      if (edges.size() == 2) {
-        lines.join(edges[0], edges[1]);
-      }
-    }
-    line_ = lines.roots();
   }
 
   void find_sectors() {
@@ -143,7 +122,7 @@ class Fillets {
           const SideAt& other = pair[1 - i];
           sectors_[{in_.sheets.of[own.facet], sheet_side(own.facet, own.side)}]
               .push_back({edge, points, in_.sheets.of[other.facet],
-                          sheet_side(other.facet, other.side), line_[e]});
+                          sheet_side(other.facet, other.side)});
         }
       }
     }
@@ -162,7 +141,7 @@ class Fillets {
                                   sheet_side(f, side)}];
       frame.normal += side == 0 ? normal : Vec3(-normal);
       frame.inward += inward.normalized();
-      frame.half += half_of(f, v);
+      frame.offset += offset_of(f, side, v);
       frame.fillet = std::max(frame.fillet, fillet_of(f, v));
       ++frame.count;
     }
@@ -170,152 +149,240 @@ class Fillets {
 
   /// Where the arc lies between two sides, in the plane across the line.
   struct Arc {
-    Vec3 normal = Vec3::Zero();  // of the own side
+    Vec3 along = Vec3::UnitX();  // the line, unit
+    Vec3 normal = Vec3::Zero();  // of the own side, unit
+    Vec3 inward = Vec3::Zero();  // across both, into the own sheet, unit
     Vec3 center = Vec3::Zero();  // from the line
-    double half = 0.0;
+    double offset = 0.0;         // of the own side
     double radius = 0.0;
-    double angle = 0.0;  // half of the arc's
+    double angle = 0.0;   // half of the arc's
+    double begins = 0.0;  // where it touches the own side, from the line
+    // The line's point over the own side, where that of a thicker sheet is in
+    // front of it: from there the own side comes down on a ramp of 45 degrees.
+    double excess = 0.0;
+
+    double length() const { return radius * angle; }
+    /// How far points at the line slide to be in the middle of the arc.
+    double slide() const { return std::max(begins - length(), 0.0); }
+    /// From where on the side is as it was.
+    double ends() const { return std::max(begins, slide() + excess); }
+
+    /// From the own side to the arc or ramp, where that runs at `way` from the
+    /// line.
+    Vec3 lift(double way) const {
+      if (radius == 0.0) {
+        return std::max(excess - std::max(way - slide(), 0.0), 0.0) * normal;
+      }
+      const double l = std::max(way - begins + length(), 0.0);
+      if (l >= length()) {
+        return Vec3::Zero();
+      }
+      const double turn = angle * (1.0 - l / length());
+      const Vec3 on_arc =
+          center - radius * (std::cos(turn) * normal + std::sin(turn) * inward);
+      return on_arc - (begins - length() + l) * inward - offset * normal;
+    }
   };
 
   SideFrame frame_at(const Edge& points, int sheet, int side,
                      double part) const {
     const SideFrame& a = frames_.at({points[0], sheet, side});
     const SideFrame& b = frames_.at({points[1], sheet, side});
-    SideFrame result;
-    result.normal =
-        (1.0 - part) * a.normal / a.count + part * b.normal / b.count;
-    result.half = (1.0 - part) * a.half / a.count + part * b.half / b.count;
-    result.fillet = (1.0 - part) * a.fillet + part * b.fillet;
-    return result;
+    const auto mean = [&](const auto& x, const auto& y) {
+      return (1.0 - part) * x / a.count + part * y / b.count;
+    };
+    return {.normal = mean(a.normal, b.normal),
+            .inward = mean(a.inward, b.inward),
+            .offset = mean(a.offset, b.offset),
+            .fillet = (1.0 - part) * a.fillet + part * b.fillet};
   }
 
   Arc arc_at(const SectorEdge& edge, int sheet, int side, double part) const {
-    const Vec3 along = (x_[edge.film[1]] - x_[edge.film[0]]).normalized();
     const SideFrame own = frame_at(edge.point, sheet, side, part);
     const SideFrame other =
         frame_at(edge.point, edge.other_sheet, edge.other_side, part);
-    const auto across = [&](const Vec3& n) {
-      return Vec3((n - along * along.dot(n)).normalized());
-    };
     Arc arc;
+    arc.along = (x_[edge.film[1]] - x_[edge.film[0]]).normalized();
+    const auto across = [&](const Vec3& n) {
+      return Vec3((n - arc.along * arc.along.dot(n)).normalized());
+    };
     arc.normal = across(own.normal);
+    arc.inward = across(own.inward);
+    arc.inward =
+        (arc.inward - arc.normal * arc.normal.dot(arc.inward)).normalized();
     const Vec3 facing = across(other.normal);
-    arc.half = own.half;
-    arc.radius = std::max(own.fillet, other.fillet);
-    const Mat3 matrix =
-        arc.normal * arc.normal.transpose() + facing * facing.transpose();
-    arc.center = mitre_inverse(matrix) * (arc.normal * (own.half + arc.radius) +
-                                          facing * (other.half + arc.radius));
+    arc.offset = own.offset;
     arc.angle = 0.5 * std::acos(std::clamp(arc.normal.dot(facing), -1.0, 1.0));
+    // The other sheet lies behind the own side where the sector is convex.
+    if (arc.normal.dot(across(other.inward)) > kOpen) {
+      arc.radius = std::max(own.fillet, other.fillet);
+    }
+    const auto corner = [&](double more) {
+      return offset_corner(
+          {{arc.normal, own.offset + more}, {facing, other.offset + more}});
+    };
+    const OffsetCorner ball = corner(arc.radius);
+    arc.center = ball.point;
+    if (ball.on[0] == 0 || ball.on[1] == 0) {
+      arc.radius = 0.0;
+      arc.center = corner(0.0).point;
+    }
+    const double most =
+        kLongest * std::max(own.offset, other.offset) + kLongest * arc.radius;
+    arc.begins = std::min(arc.center.dot(arc.inward), most);
+    arc.excess = arc.center.dot(arc.normal) - arc.offset - arc.radius;
     return arc;
   }
 
-  // What a point at `way` from the line moves by, in addition to its offset.
-  static Vec3 round(const Arc& arc, const Vec3& along, const Vec3& way) {
-    Vec3 u = way - arc.normal * arc.normal.dot(way);
-    u = (u - along * along.dot(u)).normalized();
-    const double begins = arc.center.dot(u);
-    const double size = arc.half + arc.radius;
-    const double reach = std::min(kReach * begins, kLongest * size);
-    const double s = way.norm();
-    if (!(begins > kOpen * size) || s >= reach || reach <= begins) {
-      return Vec3::Zero();
-    }
-    const double length = arc.radius * arc.angle;
-    const double l = s * (length + reach - begins) / reach;
-    const Vec3 plain = s * u + arc.half * arc.normal;
-    if (l >= length) {
-      return arc.center - arc.radius * arc.normal + (l - length) * u - plain;
-    }
-    const double turn = arc.angle * (1.0 - l / length);
-    return arc.center -
-           arc.radius * (std::cos(turn) * arc.normal + std::sin(turn) * u) -
-           plain;
-  }
-
+  // Points of the side slide along it until the line's own are in the middle
+  // of the arc, and those that the arc is over are lifted onto it.
   void round_sheet(int sheet, int side) {
     const auto found = sectors_.find({sheet, side});
     if (found == sectors_.end()) {
       return;
     }
-    std::map<int, int> points;  // wall point by film vertex
-    for (int f = 0; f < static_cast<int>(in_.topology.facets.size()); ++f) {
-      if (in_.sheets.of[f] != sheet) {
+    const std::vector<SectorEdge>& edges = found->second;
+    const OffsetSheet& own = in_.sheets.offset[sheet];
+    const Points& film = own.sheet.film.points;
+    const SlideInput input = slide_input(edges, own.sheet, sheet, side);
+    const Slides slides = slide(input);
+    const FacetProbe probe(film, own.sheet.film.facets);
+    const std::vector<int> point_at = points_of(sheet, side);
+    for (std::size_t v = 0; v < film.size(); ++v) {
+      if (point_at[v] < 0 || slides.way[v] >= input.reach) {
         continue;
       }
+      const Place to = place_on(own, side, probe, film[v] + slides.by[v]);
+      moves_[point_at[v]] += to.offset + lift_at(edges, sheet, side, to.film) -
+                             (side == 0 ? own.sides.front : own.sides.back)[v];
+    }
+  }
+
+  SlideInput slide_input(const std::vector<SectorEdge>& edges, const Sheet& own,
+                         int sheet, int side) const {
+    struct Held {
+      Mat3 matrix = Mat3::Zero();
+      Vec3 right = Vec3::Zero();
+    };
+    std::map<int, Held> held;  // per film vertex
+    double reach = 0.0;
+    for (const SectorEdge& edge : edges) {
+      for (const int end : {0, 1}) {
+        const Arc arc = arc_at(edge, sheet, side, end);
+        Held& at = held[edge.film[end]];
+        at.matrix += arc.inward * arc.inward.transpose();
+        at.right += arc.inward * arc.slide();
+        reach = std::max({reach, kReach * arc.slide(), arc.ends()});
+      }
+    }
+    SlideInput input{.sheet = own,
+                     .held = std::vector<char>(own.origin.size(), 0),
+                     .slides = Points(own.origin.size(), Vec3::Zero()),
+                     .reach = reach};
+    for (std::size_t v = 0; v < own.origin.size(); ++v) {
+      const auto at = held.find(own.origin[v]);
+      if (at != held.end()) {
+        input.held[v] = 1;
+        input.slides[v] = mitre_inverse(at->second.matrix) * at->second.right;
+      }
+    }
+    return input;
+  }
+
+  // Per point of the sheet: the wall's over it; -1 on junctions.
+  std::vector<int> points_of(int sheet, int side) const {
+    const std::vector<int>& origin = in_.sheets.offset[sheet].sheet.origin;
+    std::map<int, int> points;  // by film vertex
+    for (int f = 0; f < static_cast<int>(in_.topology.facets.size()); ++f) {
       for (const int v : facet(f).film) {
-        if (in_.topology.junction[v] == 0) {
+        if (in_.sheets.of[f] == sheet && in_.topology.junction[v] == 0) {
           points[v] = point_of(f, sheet_side(f, side), v);
         }
       }
     }
-    for (const auto& [v, point] : points) {
-      moves_[point] += moved_by(v, found->second, sheet, side);
+    std::vector<int> result(origin.size(), -1);
+    for (std::size_t v = 0; v < origin.size(); ++v) {
+      const auto at = points.find(origin[v]);
+      result[v] = at == points.end() ? -1 : at->second;
     }
+    return result;
   }
 
-  Vec3 moved_by(int v, const std::vector<SectorEdge>& edges, int sheet,
-                int side) const {
-    struct Near {
-      double distance = std::numeric_limits<double>::infinity();
-      const SectorEdge* edge = nullptr;
-      double part = 0.0;
-    };
-    std::map<int, Near> nearest;  // per line
+  /// A place on the sheet, and the side over it.
+  struct Place {
+    Vec3 film = Vec3::Zero();
+    Vec3 offset = Vec3::Zero();
+  };
+
+  static Place place_on(const OffsetSheet& own, int side,
+                        const FacetProbe& probe, const Vec3& p) {
+    const FacetProbe::Hit hit = probe.nearest(p);
+    const Triangle& t = own.sheet.film.facets[hit.facet];
+    const Points& film = own.sheet.film.points;
+    const Points& offset = side == 0 ? own.sides.front : own.sides.back;
+    const Vec3 area = (film[t[1]] - film[t[0]]).cross(film[t[2]] - film[t[0]]);
+    Place place{.film = hit.point};
+    for (int k = 0; k < 3; ++k) {
+      const Vec3& a = film[t[(k + 1) % 3]];
+      const Vec3& b = film[t[(k + 2) % 3]];
+      const double weight = (a - hit.point).cross(b - hit.point).dot(area);
+      place.offset += weight / area.squaredNorm() * offset[t[k]];
+    }
+    return place;
+  }
+
+  Vec3 lift_at(const std::vector<SectorEdge>& edges, int sheet, int side,
+               const Vec3& p) const {
+    double least = std::numeric_limits<double>::infinity();
+    const SectorEdge* nearest = nullptr;
+    double part = 0.0;
     for (const SectorEdge& edge : edges) {
       const Vec3& a = x_[edge.film[0]];
       const Vec3 way = x_[edge.film[1]] - a;
-      const double part =
-          std::clamp(way.dot(x_[v] - a) / way.squaredNorm(), 0.0, 1.0);
-      const double distance = (x_[v] - a - part * way).norm();
-      Near& near = nearest[edge.line];
-      if (distance < near.distance) {
-        near = {distance, &edge, part};
+      const double at =
+          std::clamp(way.dot(p - a) / way.squaredNorm(), 0.0, 1.0);
+      const double squared = (p - a - at * way).squaredNorm();
+      if (squared < least) {
+        least = squared;
+        nearest = &edge;
+        part = at;
       }
     }
-    Vec3 sum = Vec3::Zero();
-    double weights = 0.0;
-    for (const auto& [line, near] : nearest) {
-      const SectorEdge& edge = *near.edge;
-      const Vec3& a = x_[edge.film[0]];
-      const Vec3 along = x_[edge.film[1]] - a;
-      const Vec3 way = x_[v] - a - near.part * along;
-      const double weight = std::pow(near.distance, -4.0);
-      sum += weight * round(arc_at(edge, sheet, side, near.part),
-                            along.normalized(), way);
-      weights += weight;
-    }
-    return sum / weights;
+    return arc_at(*nearest, sheet, side, part).lift(std::sqrt(least));
   }
 
   // On the line itself: from the mitre to the middle of the arc.
   void round_junctions() {
     struct Corner {
-      Mat3 matrix = Mat3::Zero();
-      Vec3 normals = Vec3::Zero();
+      std::vector<OffsetPlane> planes;
       Points inward;
       double fillet = 0.0;
     };
     std::map<int, Corner> corners;
     for (const auto& [key, frame] : frames_) {
       Corner& corner = corners[std::get<0>(key)];
-      const Vec3 n = frame.normal.normalized();
-      corner.matrix += n * n.transpose();
-      corner.normals += n;
+      corner.planes.push_back(
+          {frame.normal.normalized(), frame.offset / frame.count});
       corner.inward.push_back(frame.inward.normalized());
       corner.fillet = std::max(corner.fillet, frame.fillet);
     }
-    for (const auto& [point, corner] : corners) {
-      const Mat3 inverse = mitre_inverse(corner.matrix);
-      const Vec3 out = (inverse * corner.normals).normalized();
+    for (auto& [point, corner] : corners) {
+      const Vec3 sharp = offset_corner(corner.planes).point;
+      for (OffsetPlane& plane : corner.planes) {
+        plane.offset += corner.fillet;
+      }
+      const OffsetCorner ball = offset_corner(corner.planes);
+      Vec3 normals = Vec3::Zero();
+      for (std::size_t i = 0; i < corner.planes.size(); ++i) {
+        normals += static_cast<double>(ball.on[i]) * corner.planes[i].normal;
+      }
+      const Vec3 out = (ball.inverse * normals).normalized();
       const bool open =
           std::any_of(corner.inward.begin(), corner.inward.end(),
                       [&](const Vec3& u) { return u.dot(out) < kOpen; });
-      if (open || corner.fillet == 0.0) {
-        continue;
+      if (!open) {
+        moves_[point] += ball.point - corner.fillet * out - sharp;
       }
-      const Vec3 to_center = inverse * corner.normals * corner.fillet;
-      moves_[point] += to_center - corner.fillet * out;
     }
   }
 
@@ -323,7 +390,6 @@ class Fillets {
   const Points& x_;
   Points moves_;
   std::vector<std::pair<Edge, std::vector<int>>> edges_;
-  std::vector<int> line_;
   std::map<SideKey, SideFrame> frames_;
   std::map<std::pair<int, int>, std::vector<SectorEdge>> sectors_;
 };

@@ -4,6 +4,7 @@
 #include <functional>
 #include <vector>
 
+#include "evolve/walls/wall_offset.h"
 #include "evolve/walls/wall_spec.h"
 #include "evolve/walls/wall_topology.h"
 
@@ -11,7 +12,7 @@ namespace meniscus::walls {
 
 /// Films cut along their junctions.
 struct WallSheets {
-  int count = 0;
+  std::vector<OffsetSheet> offset;
   std::vector<int> of;        // per facet of the topology: its sheet
   std::vector<char> flipped;  // per facet: its front is its sheet's back
 };
@@ -25,12 +26,13 @@ struct FilletInput {
 };
 
 /// What fillets add to the offset of every wall point [length]. In the plane
-/// across a junction line the sides of two neighbouring films, each offset by
-/// half its thickness, get an arc that touches both. The film's points between
-/// the line and twice the distance at which the arc begins are spread evenly
-/// over arc and side, so that facets of any size beside the line neither fold
-/// nor leave the side. Of several lines near a point the nearest counts most
-/// (weights 1 / distance^4). Sectors of 180 degrees and more have no fillet.
+/// across a junction line the sides of two neighbouring films get an arc that
+/// touches both, and the line's own point is in its middle. The other points of
+/// a side slide along it to make room (wall_slide.h), and what comes to lie
+/// under the arc is lifted onto it, so that facets of any size beside the line
+/// neither fold nor leave the side. Sectors of 180 degrees and more have no
+/// fillet; where one of their sides is cut short by a thicker neighbour it
+/// slides as well.
 Points fillet_moves(const FilletInput& input);
 
 }  // namespace meniscus::walls

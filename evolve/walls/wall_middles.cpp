@@ -1,5 +1,7 @@
 #include "evolve/walls/wall_middles.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
@@ -8,6 +10,12 @@
 #include "core/geometry/edge_key.h"
 
 namespace meniscus::walls {
+
+namespace {
+
+constexpr double kSteps = 1e9;  // places across a strip are told apart so far
+
+}  // namespace
 
 int WallMiddles::add_point(WallPoint point) {
   walls_.points.push_back(std::move(point));
@@ -21,7 +29,11 @@ int WallMiddles::strip_point(const StripCorner& at) {
   if (at.across <= 0.0) {
     return at.back;
   }
-  const auto key = std::make_tuple(at.front, at.back, at.across);
+  // Strips of films that are turned otherwise share a column the other way.
+  const bool turned = at.back < at.front;
+  const auto key = std::make_tuple(
+      std::min(at.front, at.back), std::max(at.front, at.back),
+      std::llround((turned ? 1.0 - at.across : at.across) * kSteps));
   const auto known = strip_points_.find(key);
   if (known != strip_points_.end()) {
     return known->second;

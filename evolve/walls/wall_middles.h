@@ -41,7 +41,7 @@ class WallMiddles {
 
   const EdgeMiddles& film_;
   WallTopology& walls_;
-  std::map<std::tuple<int, int, double>, int> strip_points_;
+  std::map<std::tuple<int, int, long long>, int> strip_points_;
 };
 
 }  // namespace meniscus::walls

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <optional>
+#include <utility>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -13,11 +16,13 @@ namespace meniscus::walls {
 
 namespace {
 
-constexpr double kLongestMitre = 3;  // a sharper mitre is cut there
-constexpr double kFlatHold = 1e-6;   // of the tangential move, see header
-constexpr double kLargestFix = 1.5;  // of a correction, per pass
-constexpr double kSlow = 0.95;       // a pass that gains less is the last
-constexpr double kTotalFix = 4.0;    // of all corrections together
+constexpr double kLongestMitre = 3;     // a sharper mitre is cut there
+constexpr double kFlatHold = 1e-6;      // of the tangential move, see header
+constexpr double kLargestFix = 1.5;     // of a correction, per pass
+constexpr double kSlow = 0.95;          // a pass that gains less is the last
+constexpr double kTotalFix = 4.0;       // of all corrections together
+constexpr double kInFront = 1e-9;       // rounding of n . d >= h, of d
+constexpr double kLeastSpanned = 1e-6;  // of planes that meet in a corner
 
 double corner_angle(const Sheet& sheet, int facet, int v) {
   const Triangle& t = sheet.film.facets[facet];
@@ -124,15 +129,61 @@ Points moved(const Sheet& sheet, const std::vector<Vec3>& direction,
 
 Mat3 mitre_inverse(const Mat3& matrix, double spanned) {
   const auto eigen = symmetric_eigen(matrix);
-  const double least = spanned * eigen.values[2];
   Mat3 inverse = Mat3::Zero();
   for (int i = 0; i < 3; ++i) {
-    if (eigen.values[i] > least) {
+    if (eigen.values[i] > spanned * eigen.values[2]) {
       const Vec3 e = eigen.vectors.col(i);
       inverse += e * e.transpose() / eigen.values[i];
     }
   }
   return inverse;
+}
+
+OffsetCorner offset_corner(const std::vector<OffsetPlane>& planes) {
+  const auto count = static_cast<int>(planes.size());
+  const auto corner_of = [&](const std::vector<int>& active, double spanned) {
+    Mat3 matrix = Mat3::Zero();
+    Vec3 right = Vec3::Zero();
+    for (const int i : active) {
+      matrix += planes[i].normal * planes[i].normal.transpose();
+      right += planes[i].normal * planes[i].offset;
+    }
+    OffsetCorner corner{.inverse = mitre_inverse(matrix, spanned),
+                        .on = std::vector<char>(planes.size(), 0)};
+    corner.point = corner.inverse * right;
+    for (const int i : active) {
+      corner.on[i] = 1;
+    }
+    return corner;
+  };
+  const auto is_in_front = [&](const Vec3& d) {
+    return std::all_of(planes.begin(), planes.end(), [&](const auto& plane) {
+      return plane.normal.dot(d) >= plane.offset - kInFront * d.norm();
+    });
+  };
+  std::optional<OffsetCorner> best;
+  const auto consider = [&](const std::vector<int>& active) {
+    OffsetCorner corner = corner_of(active, kLeastSpanned);
+    if (is_in_front(corner.point) &&
+        (!best || corner.point.norm() < best->point.norm())) {
+      best = std::move(corner);
+    }
+  };
+  for (int i = 0; i < count; ++i) {
+    consider({i});
+    for (int j = i + 1; j < count; ++j) {
+      consider({i, j});
+      for (int k = j + 1; k < count; ++k) {
+        consider({i, j, k});
+      }
+    }
+  }
+  if (best) {
+    return *best;
+  }
+  std::vector<int> all(planes.size());
+  std::iota(all.begin(), all.end(), 0);
+  return corner_of(all, 0.05);
 }
 
 WallShares shares(WallSide side) {

@@ -39,6 +39,29 @@ struct OffsetSides {
   int corrections = 0;
 };
 
+/// A plane n . d = h that an offset point keeps in front of.
+struct OffsetPlane {
+  Vec3 normal = Vec3::Zero();  // unit
+  double offset = 0.0;         // [length]
+};
+
+/// The point nearest to the film that no plane is behind.
+struct OffsetCorner {
+  Vec3 point = Vec3::Zero();
+  Mat3 inverse = Mat3::Zero();  // point = sum inverse n h over planes it is in
+  std::vector<char> on;         // per plane: the point is in it
+};
+
+/// min |d| with n . d >= h: where two or three planes meet, or in one of them
+/// where that is in front of the others. Of planes without such a point the
+/// least-squares one of all.
+OffsetCorner offset_corner(const std::vector<OffsetPlane>& planes);
+
+struct OffsetSheet {
+  Sheet sheet;
+  OffsetSides sides;
+};
+
 /// Moves the sheet by `asked` (per vertex, [length]) and corrects the moves by
 /// the thickness measured; the best state met is returned.
 OffsetSides offset_sides(const Sheet& sheet, const std::vector<Vec3>& direction,

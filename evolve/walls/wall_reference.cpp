@@ -93,11 +93,12 @@ class Reference {
       result_.safe_at.assign(films_.mesh.points.size(),
                              std::numeric_limits<double>::infinity());
     }
-    const std::vector<SheetFacets> sheets = cut_into_sheets(topology_, films_);
-    for (const SheetFacets& sheet : sheets) {
-      offset(sheet, apart_from(sheet, sheets));
+    const std::vector<SheetFacets> cut = cut_into_sheets(topology_, films_);
+    for (const SheetFacets& sheet : cut) {
+      offset(sheet, apart_from(sheet, cut));
     }
-    join();
+    const WallSheets sheets = sheets_of(cut);
+    join(sheets);
     round(sheets);
     return std::move(result_);
   }
@@ -119,31 +120,6 @@ class Reference {
       mesh.facet_label.push_back(facet.label);
     }
     return mesh;
-  }
-
-  WallSide side_of(const SheetFacets& facets) const {
-    const WallSpec& first = walls_[wall_of(facets.facets[0])];
-    for (const int f : facets.facets) {
-      const WallSpec& other = walls_[wall_of(f)];
-      if (other.side != first.side) {
-        throw InvalidInput(fmt::format(
-            "walls.{} and walls.{} join at an edge, but their material lies on "
-            "different sides; give both the same side",
-            first.name, other.name));
-      }
-    }
-    return first.side;
-  }
-
-  /// Per film vertex of a sheet: the walls there.
-  std::map<int, std::set<int>> walls_at(const SheetFacets& sheet) const {
-    std::map<int, std::set<int>> result;
-    for (const int f : sheet.facets) {
-      for (const int v : topology_.facets[f].film) {
-        result[v].insert(wall_of(f));
-      }
-    }
-    return result;
   }
 
   /// The facets of sheets that share no point with this one.
@@ -173,21 +149,18 @@ class Reference {
   }
 
   void offset(const SheetFacets& facets, const SurfaceMesh& others) {
-    const WallSide side = side_of(facets);
-    const Sheet sheet = make_sheet(mesh_of(facets));
-    const std::map<int, std::set<int>> walls = walls_at(facets);
+    const int wall = wall_of(facets.facets[0]);
+    const WallSide side = walls_[wall].side;
+    Sheet sheet = make_sheet(mesh_of(facets));
     std::vector<double> asked;
+    asked.reserve(sheet.origin.size());
     for (const int v : sheet.origin) {
-      double sum = 0.0;
-      for (const int w : walls.at(v)) {
-        sum += asked_.at(w, v);
-      }
-      asked.push_back(sum / static_cast<double>(walls.at(v).size()));
+      asked.push_back(asked_.at(wall, v));
     }
     const std::vector<Jet> jets = fit_jets(sheet);
     ThickenOptions options;
     options.side = side;
-    const OffsetSides sides = offset_sides(
+    OffsetSides sides = offset_sides(
         sheet, offset_directions(sheet, jets, asked), asked, options);
     std::vector<double> safe_at;
     SafeThickness safe = safe_thickness(
@@ -198,7 +171,7 @@ class Reference {
       double& at = result_.safe_at[sheet.origin[i]];
       at = std::min(at, safe_at[i]);
     }
-    note(walls_[wall_of(facets.facets[0])].region, sides, safe);
+    note(walls_[wall].region, sides, safe);
     std::vector<int> local(films_.mesh.points.size(), -1);
     for (std::size_t i = 0; i < sheet.origin.size(); ++i) {
       local[sheet.origin[i]] = static_cast<int>(i);
@@ -212,22 +185,18 @@ class Reference {
         const Vec3& x = films_.mesh.points[v];
         const Vec3 front = sides.front[at] - x;
         const Vec3 back = sides.back[at] - x;
-        set(facet.front[k], v, walls.at(v), asked[at], flipped ? back : front);
-        set(facet.back[k], v, walls.at(v), asked[at], flipped ? front : back);
+        set(facet.front[k], {wall, flipped ? back : front});
+        set(facet.back[k], {wall, flipped ? front : back});
       }
     }
+    offset_.push_back({std::move(sheet), std::move(sides)});
   }
 
-  void set(int point, int v, const std::set<int>& walls, double asked,
-           const Vec3& by) {
+  void set(int point, const WallMove& move) {
     std::vector<WallMove>& moves = result_.moves[point];
-    if (topology_.junction[v] != 0 || !moves.empty()) {
-      return;
-    }
-    for (const int w : walls) {
-      const double part =
-          asked_.at(w, v) / (asked * static_cast<double>(walls.size()));
-      moves.push_back({w, part * by});
+    if (topology_.junction[topology_.points[point].vertex] == 0 &&
+        moves.empty()) {
+      moves.push_back(move);
     }
   }
 
@@ -253,55 +222,67 @@ class Reference {
   }
 
   // --- junctions --------------------------------------------------------
-  struct Sector {
-    int vertex = -1;
-    Mat3 matrix = Mat3::Zero();
-    std::map<int, Vec3> right;  // per wall
+  struct SheetSide {
+    int wall = 0;
+    Vec3 normals = Vec3::Zero();  // by the facets' angles at the corner
+    double offset = 0.0;          // [length]
   };
 
-  void add_corner(const WallFacet& facet, int k, bool front,
-                  std::map<int, Sector>& sectors) {
+  /// By sheet and its side, per wall point.
+  using Corners = std::map<int, std::map<std::pair<int, int>, SheetSide>>;
+
+  void add_corner(const WallSheets& sheets, int f, int k, Corners& corners) {
+    const WallFacet& facet = topology_.facets[f];
     const int v = facet.film[k];
     const int wall = films_.wall[facet.label];
-    if (walls_[wall].side != WallSide::Both) {
-      throw InvalidInput(fmt::format(
-          "walls.{} lies on one side of its films, which meet others in a "
-          "junction near {}; use side = \"both\" there",
-          walls_[wall].name, text_of(films_.mesh.points[v])));
-    }
     const Points& x = films_.mesh.points;
     const Vec3 a = x[facet.film[(k + 1) % 3]] - x[v];
     const Vec3 b = x[facet.film[(k + 2) % 3]] - x[v];
     const Vec3 area = a.cross(b);
-    const Vec3 normal = (front ? 1.0 : -1.0) * area.normalized();
     const double angle = std::atan2(area.norm(), a.dot(b));
-    Sector& sector = sectors[front ? facet.front[k] : facet.back[k]];
-    sector.vertex = v;
-    sector.matrix += angle * normal * normal.transpose();
-    const Vec3 right = 0.5 * asked_.at(wall, v) * angle * normal;
-    sector.right.try_emplace(wall, Vec3::Zero()).first->second += right;
+    const WallShares part = shares(walls_[wall].side);
+    for (const bool front : {true, false}) {
+      const int point = front ? facet.front[k] : facet.back[k];
+      const int sheet_side = front == (sheets.flipped[f] != 0) ? 1 : 0;
+      SheetSide& side = corners[point][{sheets.of[f], sheet_side}];
+      side.wall = wall;
+      side.normals += (front ? angle : -angle) * area.normalized();
+      side.offset = (front ? part.front : part.back) * asked_.at(wall, v);
+    }
   }
 
-  void join() {
-    std::map<int, Sector> sectors;  // per wall point
-    for (const WallFacet& facet : topology_.facets) {
+  void join(const WallSheets& sheets) {
+    Corners corners;
+    for (std::size_t f = 0; f < topology_.facets.size(); ++f) {
       for (int k = 0; k < 3; ++k) {
-        if (topology_.junction[facet.film[k]] != 0) {
-          add_corner(facet, k, true, sectors);
-          add_corner(facet, k, false, sectors);
+        if (topology_.junction[topology_.facets[f].film[k]] != 0) {
+          add_corner(sheets, static_cast<int>(f), k, corners);
         }
       }
     }
-    for (const auto& [point, sector] : sectors) {
-      const Mat3 inverse = mitre_inverse(sector.matrix);
-      for (const auto& [wall, right] : sector.right) {
-        result_.moves[point].push_back({wall, inverse * right});
+    for (const auto& [point, sides] : corners) {
+      std::vector<OffsetPlane> planes;
+      std::vector<int> walls;
+      for (const auto& [key, side] : sides) {
+        planes.push_back({side.normals.normalized(), side.offset});
+        walls.push_back(side.wall);
+      }
+      const OffsetCorner corner = offset_corner(planes);
+      std::map<int, Vec3> moves;  // per wall
+      for (std::size_t i = 0; i < planes.size(); ++i) {
+        Vec3& move = moves.try_emplace(walls[i], Vec3::Zero()).first->second;
+        if (corner.on[i] != 0) {
+          move += corner.inverse * planes[i].normal * planes[i].offset;
+        }
+      }
+      for (const auto& [wall, by] : moves) {
+        result_.moves[point].push_back({wall, by});
       }
     }
   }
 
-  void round(const std::vector<SheetFacets>& cut) {
-    WallSheets sheets{.count = static_cast<int>(cut.size()),
+  WallSheets sheets_of(const std::vector<SheetFacets>& cut) {
+    WallSheets sheets{.offset = std::move(offset_),
                       .of = std::vector<int>(topology_.facets.size(), 0),
                       .flipped = std::vector<char>(topology_.facets.size(), 0)};
     for (std::size_t s = 0; s < cut.size(); ++s) {
@@ -310,6 +291,10 @@ class Reference {
         sheets.flipped[cut[s].facets[i]] = cut[s].flipped[i];
       }
     }
+    return sheets;
+  }
+
+  void round(const WallSheets& sheets) {
     const Points added =
         fillet_moves({topology_, films_, sheets, walls_,
                       [&](int wall, int v) { return asked_.at(wall, v); }});
@@ -327,6 +312,7 @@ class Reference {
   SafePlaces places_;
   Asked asked_;
   WallReference result_;
+  std::vector<OffsetSheet> offset_;
 };
 
 }  // namespace

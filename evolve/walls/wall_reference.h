@@ -37,8 +37,8 @@ struct WallReference {
 /// thicken() does. On a junction line or point each sector's point is where
 /// the offset planes of its films meet (of more than three the least-squares
 /// one), which joins the sheets' sides without a gap. Throws InvalidInput for a
-/// thickness that is not above 0 everywhere, and for one-sided walls at a
-/// junction; MeshError as make_sheet(), and for a film with one side only.
+/// thickness that is not above 0 everywhere; MeshError as make_sheet(), and for
+/// a film with one side only.
 WallReference wall_reference(const WallTopology& topology,
                              const WallFilms& films,
                              const std::vector<WallSpec>& walls,

@@ -22,13 +22,8 @@ class Sheets {
       : topology_(topology), films_(films) {}
 
   std::vector<SheetFacets> cut() {
-    std::map<Edge, std::vector<int>> users;
     const auto count = static_cast<int>(topology_.facets.size());
-    for (int f = 0; f < count; ++f) {
-      for (int k = 0; k < 3; ++k) {
-        users[edge(f, k)].push_back(f);
-      }
-    }
+    const FacetsAboutEdges users = facets_about_edges(topology_.facets);
     std::vector<int> turned(topology_.facets.size(), -1);  // 0, 1 when known
     std::vector<SheetFacets> sheets;
     for (int first = 0; first < count; ++first) {
@@ -66,12 +61,12 @@ class Sheets {
     return false;
   }
 
-  void spread(int f, const std::map<Edge, std::vector<int>>& users,
-              std::vector<int>& turned, std::vector<int>& open) const {
+  void spread(int f, const FacetsAboutEdges& users, std::vector<int>& turned,
+              std::vector<int>& open) const {
     for (int k = 0; k < 3; ++k) {
       const Edge e = edge(f, k);
       const std::vector<int>& there = users.at(e);
-      if (there.size() != 2) {
+      if (there.size() != 2 || is_junction(topology_.facets, there)) {
         continue;
       }
       const int g = there[0] == f ? there[1] : there[0];

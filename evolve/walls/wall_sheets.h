@@ -7,7 +7,7 @@
 
 namespace meniscus::walls {
 
-/// Film facets joined by edges that no third facet has.
+/// Film facets of one label, joined by edges that are no junctions.
 struct SheetFacets {
   std::vector<int> facets;    // of the topology, ascending
   std::vector<char> flipped;  // per facet of these: its front is the sheet's

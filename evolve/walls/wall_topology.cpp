@@ -80,6 +80,11 @@ class Builder {
   // --- rims ---------------------------------------------------------------
   using Column = std::pair<int, int>;  // front and back point
 
+  // As strips of films that are turned otherwise have it too.
+  static Column either_way(const Column& column) {
+    return std::minmax(column.first, column.second);
+  }
+
   struct RimEdge {
     Column from, to;  // as the film's facet runs
     int facet = 0;
@@ -101,8 +106,8 @@ class Builder {
       std::array<int, 2> groups = {};
       int i = 0;
       for (const Column& column : {rim.from, rim.to}) {
-        const auto [at, is_new] =
-            group_of.try_emplace(column, static_cast<int>(strips.size()));
+        const auto [at, is_new] = group_of.try_emplace(
+            either_way(column), static_cast<int>(strips.size()));
         if (is_new) {
           strips.add();
         }
@@ -177,8 +182,8 @@ class Builder {
     for (std::size_t e = 0; e < rim_edges_.size(); ++e) {
       const RimEdge& rim = rim_edges_[e];
       const int rows = rows_of.at(rim.group);
-      rows_[rim.from] = rows;
-      rows_[rim.to] = rows;
+      rows_[either_way(rim.from)] = rows;
+      rows_[either_way(rim.to)] = rows;
       const int region = region_of(result_.facets[rim.facet].label);
       for (int j = 0; j < rows; ++j) {
         const double high = 1.0 - static_cast<double>(j) / rows;
@@ -210,17 +215,17 @@ class Builder {
   void add_caps() {
     std::map<Column, int> uses;
     for (const RimEdge& rim : rim_edges_) {
-      ++uses[rim.from];
-      ++uses[rim.to];
+      ++uses[either_way(rim.from)];
+      ++uses[either_way(rim.to)];
     }
     std::map<int, Opening> starting;  // by the point at which it starts
     for (std::size_t e = 0; e < rim_edges_.size(); ++e) {
       const RimEdge& rim = rim_edges_[e];
       const int region = region_of(result_.facets[rim.facet].label);
-      if (uses[rim.from] == 1) {
+      if (uses[either_way(rim.from)] == 1) {
         starting[rim.from.second] = {rim.from, false, rim_label_[e], region};
       }
-      if (uses[rim.to] == 1) {
+      if (uses[either_way(rim.to)] == 1) {
         starting[rim.to.first] = {rim.to, true, rim_label_[e], region};
       }
     }
@@ -247,7 +252,7 @@ class Builder {
     }
     const int center = add_point(std::move(middle));
     for (const Opening& opening : loop) {
-      const int rows = rows_.at(opening.column);
+      const int rows = rows_.at(either_way(opening.column));
       const auto corner = [&](int j) {
         const double down = static_cast<double>(j) / rows;
         return StripCorner{opening.column.first, opening.column.second,
@@ -348,18 +353,13 @@ class Builder {
     return mesh;
   }
 
-  // On the finest mesh: vertices of edges with three or more facets.
+  // On the finest mesh.
   void find_junctions() {
     result_.junction.assign(x().size(), 0);
-    std::map<Edge, int> uses;
-    for (const WallFacet& f : result_.facets) {
-      for (int k = 0; k < 3; ++k) {
-        const int a = f.film[k];
-        const int b = f.film[(k + 1) % 3];
-        if (++uses[edge_key(a, b)] > 2) {
-          result_.junction[a] = 1;
-          result_.junction[b] = 1;
-        }
+    for (const auto& [edge, facets] : facets_about_edges(result_.facets)) {
+      if (is_junction(result_.facets, facets)) {
+        result_.junction[edge[0]] = 1;
+        result_.junction[edge[1]] = 1;
       }
     }
   }
@@ -371,11 +371,28 @@ class Builder {
   std::vector<std::string> labels_;
   std::vector<RimEdge> rim_edges_;
   std::vector<int> rim_label_;  // per rim edge
-  std::map<Column, int> rows_;
+  std::map<Column, int> rows_;  // by columns either way
   std::vector<RimFacet> rim_facets_;
 };
 
 }  // namespace
+
+FacetsAboutEdges facets_about_edges(const std::vector<WallFacet>& facets) {
+  FacetsAboutEdges about;
+  for (std::size_t f = 0; f < facets.size(); ++f) {
+    const Triangle& t = facets[f].film;
+    for (int k = 0; k < 3; ++k) {
+      about[edge_key(t[k], t[(k + 1) % 3])].push_back(static_cast<int>(f));
+    }
+  }
+  return about;
+}
+
+bool is_junction(const std::vector<WallFacet>& facets,
+                 const std::vector<int>& about) {
+  return about.size() > 2 || (about.size() == 2 &&
+                              facets[about[0]].label != facets[about[1]].label);
+}
 
 WallTopology wall_topology(const WallFilms& films) {
   return Builder(films).build();

@@ -1,8 +1,9 @@
 /// Which points and facets the walls of a film complex have: its films meet at
-/// creases and junctions or end at rims. No sizes: see wall_offset and
+/// junctions or end at rims. No sizes: see wall_offset and
 /// wall_model.
 #pragma once
 
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -50,8 +51,17 @@ struct WallTopology {
   SurfaceMesh coarse;
   SurfaceMesh fine;
   EdgeMiddles middles;         // of wall points, all levels
-  std::vector<char> junction;  // per film vertex: three or more films meet
+  std::vector<char> junction;  // per film vertex: it is on a junction's line
 };
+
+/// Facets by the film edges that they have.
+using FacetsAboutEdges = std::map<Edge, std::vector<int>>;
+FacetsAboutEdges facets_about_edges(const std::vector<WallFacet>& facets);
+
+/// Whether the facets `about` an edge end there: they are of two films, or
+/// three and more.
+bool is_junction(const std::vector<WallFacet>& facets,
+                 const std::vector<int>& about);
 
 /// Around every film vertex the sides of its facets fall into sectors: fans of
 /// sides that follow each other about the edges there, one wall point each. Two

@@ -3,11 +3,15 @@
 #include "evolve/walls/wall_model.h"
 
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 #include <numbers>
+#include <numeric>
+#include <random>
 
 #include <Eigen/Geometry>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "core/error.h"
@@ -167,7 +171,8 @@ Made make(const SurfaceMesh& mesh, double thickness, int levels = 1,
 /// `away` accepts: to the nearest place of its back.
 template <class Away>
 double worst_thickness(const SurfaceMesh& wall, const std::string& film,
-                       double thickness, const Away& away) {
+                       double thickness, const Away& away,
+                       double* least = nullptr) {
   SurfaceMesh back = wall;
   back.facets.clear();
   const int front = wall.label_of(film);
@@ -183,12 +188,29 @@ double worst_thickness(const SurfaceMesh& wall, const std::string& film,
     const Triangle& t = wall.facets[f];
     const Vec3 p =
         (wall.points[t[0]] + wall.points[t[1]] + wall.points[t[2]]) / 3.0;
-    if (wall.facet_label[f] == front && away(p)) {
-      worst = std::max(worst,
-                       std::abs(probe.nearest(p).distance / thickness - 1.0));
+    if (wall.facet_label[f] != front) {
+      continue;
+    }
+    const double ratio = probe.nearest(p).distance / thickness;
+    if (away(p)) {
+      worst = std::max(worst, std::abs(ratio - 1.0));
+    }
+    if (least != nullptr) {
+      *least = std::min(*least, ratio);
     }
   }
   return worst;
+}
+
+/// Least part of the thickness anywhere, and the largest relative error where
+/// `away` says so.
+template <class Away>
+std::pair<double, double> thickness_range(const SurfaceMesh& wall,
+                                          const std::string& film,
+                                          double thickness, const Away& away) {
+  double least = 1.0;
+  const double worst = worst_thickness(wall, film, thickness, away, &least);
+  return {least, worst};
 }
 
 /// Largest distance of a point to the nearest of the others.
@@ -249,6 +271,115 @@ INSTANTIATE_TEST_SUITE_P(Junctions, WallsAtALine,
                            std::replace(name.begin(), name.end(), ' ', '_');
                            return name;
                          });
+
+struct RandomFan {
+  std::vector<double> angles;  // [degree]
+  std::vector<double> thickness;
+  std::vector<double> fillets;
+  int rows = 0;  // of facets from line to rim, of length 1
+  std::string text;
+};
+
+struct RandomBounds {
+  double least_angle = 0.0;  // between films [degree]
+  double most_ratio = 0.0;   // of thicknesses
+  int most_rows = 0;
+};
+
+RandomFan random_fan(std::mt19937& random, const RandomBounds& bounds) {
+  std::uniform_real_distribution<double> part(0.0, 1.0);
+  const int count = 2 + static_cast<int>(3.0 * part(random));
+  std::vector<double> gaps;
+  for (int k = 0; k < count; ++k) {
+    gaps.push_back(part(random));
+  }
+  const double all = std::accumulate(gaps.begin(), gaps.end(), 0.0);
+  RandomFan fan;
+  for (double at = 360.0 * part(random); const double gap : gaps) {
+    fan.angles.push_back(at);
+    at += bounds.least_angle + (360.0 - bounds.least_angle * count) * gap / all;
+  }
+  fan.rows = 4 + static_cast<int>((bounds.most_rows - 4) * part(random));
+  const double most = 0.04 * std::pow(4.0, part(random));
+  for (const double angle : fan.angles) {
+    const double t = most * std::pow(bounds.most_ratio, -part(random));
+    fan.thickness.push_back(t);
+    fan.fillets.push_back(0.8 * t * part(random));
+    fan.text += fmt::format(", {:.3g} at {:.3g} (fillet {:.3g})", t, angle,
+                            fan.fillets.back());
+  }
+  fan.text = fmt::format("edge {:.3g}{}", 1.0 / fan.rows, fan.text);
+  return fan;
+}
+
+/// Walls of `mesh`, its films those of `fan`: closed, nowhere thinner than 0.9
+/// of what was asked, and as thick as that further from the line than twice the
+/// thickest on both sides of it, where facets are shorter than ten of them.
+void expect_walls(const SurfaceMesh& mesh, const RandomFan& fan,
+                  const std::function<double(const Vec3&)>& from_line) {
+  constexpr double kLeastOfAsked = 0.9;
+  walls::WallFilms films = films_of(mesh, 1, 0.1);
+  std::vector<walls::WallSpec> specs;
+  for (std::size_t k = 0; k < fan.angles.size(); ++k) {
+    films.wall[k] = static_cast<int>(k);
+    specs.push_back(spec(mesh, fan.thickness[k], fan.fillets[k]));
+    specs.back().films = {mesh.labels[k]};
+  }
+  films.asked = fan.thickness;
+  films.region.assign(specs.size(), 0);
+  const walls::WallModel model(films, specs);
+  const walls::ThickWall& wall = model.walls().at(0);
+  EXPECT_TRUE(wall.findings.empty()) << summary(wall.findings);
+  const double most =
+      *std::max_element(fan.thickness.begin(), fan.thickness.end());
+  for (std::size_t k = 0; k < specs.size(); ++k) {
+    const auto [least, worst] = thickness_range(
+        wall.surface, mesh.labels[k], fan.thickness[k], [&](const Vec3& p) {
+          return from_line(p) > 4.0 * most && fan.rows * fan.thickness[k] > 0.1;
+        });
+    EXPECT_GT(least, kLeastOfAsked) << mesh.labels[k];
+    EXPECT_LT(worst, kPromisedThickness) << mesh.labels[k];
+  }
+}
+
+// Whatever angles, thicknesses, fillets and edges, on a line that ends on rims.
+TEST(WallsAtALine, OfRandomThicknessAndEdge) {
+  std::mt19937 random(20);
+  for (int trial = 0; trial < 12; ++trial) {
+    const RandomFan films = random_fan(
+        random, {.least_angle = 50.0, .most_ratio = 2.0, .most_rows = 24});
+    SCOPED_TRACE(fmt::format("trial {}: {}", trial, films.text));
+    expect_walls(fan(films.angles, films.rows), films,
+                 [](const Vec3& p) { return std::hypot(p.x(), p.z()); });
+  }
+}
+
+// The same around a circle, where there are no such ends: thicknesses may
+// differ eightfold and angles be sharp.
+TEST(WallsAtALine, AroundACircle) {
+  constexpr double kRadius = 1.6;
+  std::mt19937 random(21);
+  for (int trial = 0; trial < 6; ++trial) {
+    const RandomFan films = random_fan(
+        random, {.least_angle = 30.0, .most_ratio = 8.0, .most_rows = 14});
+    SCOPED_TRACE(fmt::format("trial {}: {}", trial, films.text));
+    std::vector<SurfaceMesh> parts;
+    for (const double degree : films.angles) {
+      const double a = degree * kHalfTurn / 180.0;
+      parts.push_back(shapes::patch(
+          [&](double around, double out) {
+            const double r = kRadius + out * std::cos(a);
+            const double b = 2.0 * kHalfTurn * around;
+            return Vec3(r * std::cos(b), r * std::sin(b), out * std::sin(a));
+          },
+          {.rows = films.rows, .columns = 8 * films.rows, .around = true},
+          "film" + std::to_string(parts.size())));
+    }
+    expect_walls(welded(parts), films, [](const Vec3& p) {
+      return std::hypot(std::hypot(p.x(), p.y()) - kRadius, p.z());
+    });
+  }
+}
 
 TEST(WallsAtAPoint, OfFourLinesAreClosed) {
   const double t = 0.08;
@@ -415,11 +546,51 @@ TEST(WallModel, OfACatenoidIsWhatThickenMakes) {
   }
 }
 
-TEST(WallModel, OfOneSideRefusesJunctions) {
-  const SurfaceMesh mesh = fan({0, 90, 180});
-  std::vector<walls::WallSpec> specs = {spec(mesh, 0.1)};
-  specs[0].side = walls::WallSide::Inside;
-  EXPECT_THROW(walls::WallModel(films_of(mesh, 0, 0.1), specs), InvalidInput);
+// A skin whose material lies on one side keeps its other side as the film has
+// it, also where a rib meets it there or there.
+TEST(WallModel, OfOneSideMeetsOthers) {
+  const double t = 0.1;
+  for (const double rib : {70.0, 250.0}) {
+    const SurfaceMesh mesh = fan({0, rib, 180}, 16);
+    std::vector<walls::WallSpec> specs = {spec(mesh, t), spec(mesh, t)};
+    specs[0].films = {"film0", "film2"};
+    specs[0].side = walls::WallSide::Inside;
+    specs[1].films = {"film1"};
+    walls::WallFilms films = films_of(mesh, 1, t);
+    films.wall = {0, 1, 0};
+    films.region = {0, 0};
+    films.asked = {t, t};
+    for (std::size_t f = 0; f < films.mesh.facets.size(); ++f) {
+      if (films.mesh.facet_label[f] == 2) {  // its front up, as film0's
+        std::swap(films.mesh.facets[f][1], films.mesh.facets[f][2]);
+      }
+    }
+    const walls::WallModel model(films, specs);
+    const walls::ThickWall& wall = model.walls().at(0);
+    EXPECT_TRUE(wall.findings.empty()) << summary(wall.findings);
+    const bool meets_front = rib > 180.0;
+    double low = 0.0;
+    double high = 0.0;
+    for (std::size_t f = 0; f < wall.surface.facets.size(); ++f) {
+      const std::string& label =
+          wall.surface.labels[wall.surface.facet_label[f]];
+      for (const int v : wall.surface.facets[f]) {
+        const Vec3& p = wall.surface.points[v];
+        if (std::abs(p.x()) < 4.0 * t) {
+          continue;
+        }
+        if (label == "film0" || label == "film2") {
+          low = std::max(low, std::abs(p.z()));
+        } else if (label == "film0/back" || label == "film2/back") {
+          high = std::max(high, std::abs(p.z() + t));
+        }
+      }
+    }
+    EXPECT_LT(low, kWallRounding) << meets_front;
+    EXPECT_LT(high, kWallRounding) << meets_front;
+    // The rib's share, less what of it is in the skin.
+    EXPECT_NEAR(wall.volume, 2.0 * 2.0 * t + 2.0 * t, 3.0 * t * t);
+  }
 }
 
 }  // namespace

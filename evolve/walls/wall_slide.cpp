@@ -1,0 +1,105 @@
+#include "evolve/walls/wall_slide.h"
+
+#include <queue>
+#include <utility>
+
+#include "core/geometry/harmonic.h"
+
+namespace meniscus::walls {
+
+namespace {
+
+/// Length of the shortest way along edges from a held point, up to `reach`;
+/// `reach` beyond.
+std::vector<double> ways_from_held(const SlideInput& input) {
+  const Sheet& sheet = input.sheet;
+  const Points& x = sheet.film.points;
+  std::vector<double> way(x.size(), input.reach);
+  using Open = std::pair<double, int>;
+  std::priority_queue<Open, std::vector<Open>, std::greater<>> open;
+  for (std::size_t v = 0; v < x.size(); ++v) {
+    if (input.held[v] != 0) {
+      way[v] = 0.0;
+      open.emplace(0.0, static_cast<int>(v));
+    }
+  }
+  while (!open.empty()) {
+    const auto [length, v] = open.top();
+    open.pop();
+    if (length > way[v]) {
+      continue;
+    }
+    for (int k = sheet.edge_start[v]; k < sheet.edge_start[v + 1]; ++k) {
+      const Edge& edge = sheet.edges[sheet.edge_list[k]];
+      const int w = edge[0] == v ? edge[1] : edge[0];
+      const double longer = length + (x[w] - x[v]).norm();
+      if (longer < way[w]) {
+        way[w] = longer;
+        open.emplace(longer, w);
+      }
+    }
+  }
+  return way;
+}
+
+/// Where the sheet ends, but for its junctions.
+void keep_to_rims(const SlideInput& input, Points& slides) {
+  const Sheet& sheet = input.sheet;
+  const Points& x = sheet.film.points;
+  Points along(x.size(), Vec3::Zero());
+  for (std::size_t e = 0; e < sheet.edges.size(); ++e) {
+    if (sheet.edge_facets[e][1] >= 0) {
+      continue;
+    }
+    const auto [a, b] = sheet.edges[e];
+    const Vec3 way = x[b] - x[a];
+    for (const int v : {a, b}) {
+      along[v] += along[v].dot(way) < 0.0 ? Vec3(-way) : way;
+    }
+  }
+  for (std::size_t v = 0; v < x.size(); ++v) {
+    const double squared = along[v].squaredNorm();
+    if (input.held[v] == 0 && squared > 0.0) {
+      slides[v] = along[v] * (along[v].dot(slides[v]) / squared);
+    }
+  }
+}
+
+}  // namespace
+
+Slides slide(const SlideInput& input) {
+  const Sheet& sheet = input.sheet;
+  const std::size_t count = sheet.film.points.size();
+  Slides result{.by = Points(count), .way = ways_from_held(input)};
+  HarmonicProblem problem{
+      .points = sheet.film.points,
+      .mesh = sheet.film.facets,
+      .facets = {},
+      .fixed = std::vector<char>(count, 0),
+      .values = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(count), 3)};
+  bool is_free = false;
+  for (std::size_t v = 0; v < count; ++v) {
+    problem.values.row(static_cast<Eigen::Index>(v)) = input.slides[v];
+    problem.fixed[v] =
+        input.held[v] != 0 || result.way[v] >= input.reach ? 1 : 0;
+    is_free = is_free || problem.fixed[v] == 0;
+  }
+  for (std::size_t f = 0; f < sheet.film.facets.size(); ++f) {
+    for (const int v : sheet.film.facets[f]) {
+      if (problem.fixed[v] == 0) {
+        problem.facets.push_back(static_cast<int>(f));
+        break;
+      }
+    }
+  }
+  if (is_free) {
+    problem.values = harmonic(problem);
+  }
+  for (std::size_t v = 0; v < count; ++v) {
+    result.by[v] = problem.values.row(static_cast<Eigen::Index>(v)).transpose();
+  }
+  keep_to_rims(input, result.by);
+  return result;
+}
+
+}  // namespace meniscus::walls
