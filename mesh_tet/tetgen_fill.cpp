@@ -205,7 +205,9 @@ TetgenOutput fill_surface(const SurfaceMesh& surface, const SurfaceFit& fit,
   if ((options.edge || !options.size) && count > kMostElements) {
     return too_many(count);
   }
-  const Points points = frame.into(surface.points);
+  Points points = frame.into(surface.points);
+  const Points inside = frame.into(options.inside);
+  points.insert(points.end(), inside.begin(), inside.end());
   const TetgenInput input{.points = &points,
                           .facets = &surface.facets,
                           .holes = frame.into(fit.cavities),

@@ -31,6 +31,8 @@ struct TetrahedralizeOptions {
                                     // automatic: the surface's mean edge
   EdgeAtPlace size = {};            // target edge by place, at most `edge`; the
                                     // surface keeps its own
+  Points inside = {};               // nodes to have inside the bodies, away
+                                    // from the surface [length]
   double radius_edge_ratio = 1.4;   // TetGen's quality bound, at least 1
   double min_dihedral_deg = 15.0;   // TetGen's aim, 0 to 18; not reached
                                     // where the surface does not allow it

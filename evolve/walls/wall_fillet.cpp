@@ -20,6 +20,8 @@ namespace {
 
 constexpr double kOpen = 0.05;     // sine of a sector, cosine of its half:
                                    // less is convex
+constexpr double kRoomUsed = 0.9;  // of half a sheet's width
+constexpr double kFacing = -0.25;  // cosine: ends of a sheet are opposite
 constexpr double kLongest = 20.0;  // of (offset + radius): reach
 constexpr double kReach = 3.0;     // of the longest slide
 
@@ -57,6 +59,7 @@ class Fillets {
     moves_.assign(in_.topology.points.size(), Vec3::Zero());
     find_edges();
     find_sectors();
+    fit_fillets();
     const auto sheets = static_cast<int>(in_.sheets.offset.size());
     for (int sheet = 0; sheet < sheets; ++sheet) {
       for (const int side : {0, 1}) {
@@ -349,6 +352,73 @@ class Fillets {
       }
     }
     return arc_at(*nearest, sheet, side, part).lift(std::sqrt(least));
+  }
+
+  // --- room -----------------------------------------------------------------
+  /// Half of the way over the sheet from `p`, in the direction `inward`, to
+  /// where it ends opposite: the radius of the largest disk that touches p.
+  double room(const Sheet& sheet, const Vec3& p, const Vec3& inward) const {
+    double least = std::numeric_limits<double>::infinity();
+    const Points& x = sheet.film.points;
+    for (std::size_t e = 0; e < sheet.edges.size(); ++e) {
+      const auto [f, other] = sheet.edge_facets[e];
+      if (other >= 0) {
+        continue;
+      }
+      const auto [a, b] = sheet.edges[e];
+      const Triangle& t = sheet.film.facets[f];
+      const int far = std::accumulate(t.begin(), t.end(), 0) - a - b;
+      const Vec3 along = (x[b] - x[a]).normalized();
+      Vec3 facing = x[far] - x[a];
+      facing = (facing - along * along.dot(facing)).normalized();
+      if (facing.dot(inward) > kFacing) {
+        continue;
+      }
+      for (const Vec3& q : {x[a], x[b], Vec3(0.5 * (x[a] + x[b]))}) {
+        const double ahead = (q - p).dot(inward);
+        if (ahead > 0.0) {
+          least = std::min(least, (q - p).squaredNorm() / (2.0 * ahead));
+        }
+      }
+    }
+    return least;
+  }
+
+  // Of one sector the sheets have one fillet, the largest that is asked for,
+  // and no larger than all of them have room for.
+  void fit_fillets() {
+    std::map<int, std::vector<std::pair<SideKey, SideFrame*>>> at;
+    for (auto& [key, frame] : frames_) {
+      at[std::get<0>(key)].emplace_back(key, &frame);
+    }
+    for (const auto& [point, frames] : at) {
+      std::vector<OffsetPlane> planes;
+      double radius = 0.0;
+      for (const auto& [key, frame] : frames) {
+        planes.push_back(
+            {frame->normal.normalized(), frame->offset / frame->count});
+        radius = std::max(radius, frame->fillet);
+      }
+      const Vec3 sharp = offset_corner(planes).point;
+      for (OffsetPlane& plane : planes) {
+        plane.offset += radius;
+      }
+      const Vec3 ball = offset_corner(planes).point;
+      double part = 1.0;
+      for (const auto& [key, frame] : frames) {
+        const Vec3 inward = frame->inward.normalized();
+        const double grows = (ball - sharp).dot(inward);
+        if (grows > 0.0) {
+          const double has =
+              kRoomUsed * room(in_.sheets.offset[std::get<1>(key)].sheet,
+                               x_[in_.topology.points[point].vertex], inward);
+          part = std::min(part, (has - sharp.dot(inward)) / grows);
+        }
+      }
+      for (const auto& [key, frame] : frames) {
+        frame->fillet = radius * std::max(part, 0.0);
+      }
+    }
   }
 
   // On the line itself: from the mitre to the middle of the arc.

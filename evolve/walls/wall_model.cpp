@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <map>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
@@ -16,6 +18,9 @@ namespace meniscus::walls {
 namespace {
 
 constexpr double kSpannedByEdges = 1e-4;  // of the largest eigenvalue
+// Walls with nodes half way across, of the edges there.
+constexpr double kThinnestHalved = 0.5;
+constexpr double kThickestHalved = 2.0;
 
 std::vector<WallSpec> on_finest(const std::vector<WallSpec>& walls,
                                 const WallTopology& topology,
@@ -325,6 +330,59 @@ void WallModel::through_normals(const Points& film, const Points& normals,
 }
 
 /// One closed wall per region, measured and checked.
+Points WallModel::middles() const {
+  const SurfaceMesh& mesh = nodes_.mesh;
+  const Points points = points_of(reference_film_, numbers(given_));
+  int sides = 0;  // of facets' labels, the rims' come after these
+  for (const WallFacet& facet : topology_.facets) {
+    sides = std::max(sides, 2 * (facet.label + 1));
+  }
+  struct Across {
+    std::vector<int> corners;
+    double edges = 0.0;  // length
+    int count = 0;
+    bool on_rim = false;
+  };
+  std::map<int, Across> across;  // by film vertex
+  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+    const Triangle& t = mesh.facets[f];
+    for (int k = 0; k < 3; ++k) {
+      const int p = nodes_.corner[t[k]];
+      const int v = topology_.points[p].vertex;
+      if (v < 0) {
+        continue;
+      }
+      Across& at = across[v];
+      at.on_rim = at.on_rim || mesh.facet_label[f] >= sides;
+      if (std::find(at.corners.begin(), at.corners.end(), p) ==
+          at.corners.end()) {
+        at.corners.push_back(p);
+      }
+      for (const int other : {t[(k + 1) % 3], t[(k + 2) % 3]}) {
+        at.edges += (points[nodes_.corner[other]] - points[p]).norm();
+        ++at.count;
+      }
+    }
+  }
+  Points result;
+  for (const auto& [v, at] : across) {
+    Vec3 middle = Vec3::Zero();
+    for (const int p : at.corners) {
+      middle += points[p] / static_cast<double>(at.corners.size());
+    }
+    double least = std::numeric_limits<double>::infinity();
+    for (const int p : at.corners) {
+      least = std::min(least, (points[p] - middle).norm());
+    }
+    const double part = 2.0 * least * at.count / at.edges;  // of the edge
+    if (!at.on_rim && at.corners.size() > 1 && part > kThinnestHalved &&
+        part < kThickestHalved) {
+      result.push_back(middle);
+    }
+  }
+  return result;
+}
+
 void WallModel::report() {
   const SurfaceMesh all = fine(reference_film_, numbers(given_));
   std::vector<char> in_front(topology_.points.size(), 0);

@@ -69,6 +69,13 @@ class WallModel {
   SurfaceMesh fine(const Points& film,
                    const std::vector<VectorX>& numbers) const;
 
+  /// Where the meshed walls should have nodes inside, at the reference film
+  /// [length]: half way across them at the film's vertices, and on its
+  /// junctions, so that two elements lie across a wall. None where that is
+  /// thinner than half the edges there, whose elements would be too flat, or
+  /// twice as thick as they are, which has nodes inside anyway.
+  Points middles() const;
+
   /// As FilmModel::split_facets().
   void split_facets(const std::vector<char>& marked);
 

@@ -134,8 +134,8 @@ void split_facets(const std::vector<char>& marked, FrozenPart& part) {
 }
 
 bool fill_surface(const case_data::EvaluatedCase& inputs,
-                  const mesh_tet::TetrahedralizeOptions& options,
-                  Monitor& monitor, FrozenPart& part) {
+                  mesh_tet::TetrahedralizeOptions options, Monitor& monitor,
+                  FrozenPart& part) {
   const StageMeter meter;
   Evaluation& start = part.start;
   const QuadraticSurface surface =
@@ -146,8 +146,15 @@ bool fill_surface(const case_data::EvaluatedCase& inputs,
   monitor.progress(
       {.stage = "mesh", .detail = "filling the surface, " + text_of(work)});
   require_work(work, edge);
+  if (part.walls) {
+    options.inside = part.walls->middles();
+  }
   mesh_tet::Tetrahedralization filled =
       mesh_tet::tetrahedralize(surface.base, options);
+  if (filled.failure && !options.inside.empty()) {
+    options.inside.clear();  // one element across is better than none
+    filled = mesh_tet::tetrahedralize(surface.base, options);
+  }
   if (filled.failure) {
     start.failure = filled.failure;
     part.unfilled = surface.base;

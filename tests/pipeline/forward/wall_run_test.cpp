@@ -1,7 +1,9 @@
 // Walls are meshed, analysed and differentiated like any part.
 #include <cmath>
 #include <numbers>
+#include <random>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -143,6 +145,41 @@ TEST(WallRuns, OfAPipeAreLames) {
 }
 
 // The pressure inside widens the pipe (above), by that name too.
+// Whatever the edges, up to twice the wall's thickness.
+TEST(WallRuns, HaveTwoElementsAcross) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> part(0.0, 1.0);
+  for (int trial = 0; trial < 8; ++trial) {
+    const double thick = 5.0 + 3.0 * part(random);
+    const double edge = thick * (0.6 + 1.4 * part(random));
+    SCOPED_TRACE(fmt::format("wall {:.3g}, edge {:.3g}", thick, edge));
+    std::string text = fixed_springs(cylinder());
+    for (const auto& [from, to] :
+         std::vector<std::pair<std::string, std::string>>{
+             {"initial = 6.0", fmt::format("initial = {}", thick)},
+             {"center = [0, 0, 20]", "center = [0, 0, 80]"},
+             {"20 * pi", "80 * pi"},
+             {"fea = 5.0", fmt::format("fea = {}", edge)},
+             {"film = 2.5", fmt::format("film = {}", edge / 2.0)}}) {
+      text = changed(std::move(text), from, to);
+    }
+    const case_data::Case input = case_of(text);
+    const forward::ForwardModel model(input);
+    ASSERT_FALSE(model.failure()) << model.failure()->message;
+    forward::EvaluationFields fields;
+    const forward::Evaluation at =
+        model.evaluate(case_data::initial_design(input), &fields);
+    ASSERT_FALSE(at.failure) << at.failure->message;
+    for (int k = 0; k < 60; ++k) {
+      const double angle = 2.0 * std::numbers::pi * part(random);
+      const double radius = 30.0 + (k % 2 == 0 ? 0.5 : -0.5) * thick;
+      const Vec3 place(radius * std::cos(angle), radius * std::sin(angle),
+                       40.0 + 20.0 * (part(random) - 0.5));
+      EXPECT_FALSE(stress::one_element_through(fields.mesh, place, 0));
+    }
+  }
+}
+
 TEST(WallRuns, NameTheirSidesByInsideAndOutside) {
   const auto surface_of = [](const std::string& name) {
     return case_of(changed(cylinder(), "on = \"skin/back\", pressure",
