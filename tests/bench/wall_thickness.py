@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """How thick are the walls of cases/h_beam_casting, front to back, further than
-two thicknesses from the lines at which they meet? Asked: within 5 %. Not part
+two thicknesses from the lines at which they meet, and anywhere? Asked: within
+5 % there, and nowhere below 0.9 of what the case asks for. Not part
 of the tests, which ask it of simpler walls. Needs python3-vtk9 and numpy.
 Use: wall_thickness.py PROGRAM [--set NAME=VALUE ...], from anywhere."""
 import math
@@ -17,6 +18,7 @@ CASE = pathlib.Path(__file__).resolve().parents[2] / "cases/h_beam_casting"
 WALLS = {"shell": 12.0, "blend_a": 12.0, "blend_b": 12.0, "web_a": 14.0,
          "web_b": 14.0}  # [mm]
 PROMISED = 0.05
+LEAST = 0.9
 
 
 def read(path):
@@ -75,16 +77,20 @@ def main():
     names = [names.GetValue(i) for i in range(names.GetNumberOfValues())]
     label = vtk_to_numpy(wall.GetCellData().GetArray("surface"))
     worst = 0.0
+    least = 1.0
     for film, asked in WALLS.items():
         probe = probe_of(wall.GetPoints(),
                          facets[label == names.index(film + "/back")])
         middles = points[facets[label == names.index(film)]].mean(axis=1)
         away = distances(middles, lines) > 2 * asked
-        off = np.array([nearest(probe, p) for p in middles[away]]) / asked - 1
+        all_off = np.array([nearest(probe, p) for p in middles]) / asked - 1
+        off = all_off[away]
         worst = max(worst, abs(off).max())
+        least = min(least, 1 + all_off.min())
         print(f"{film:8} {len(off):6} places  {100 * off.min():+.2f} to "
-              f"{100 * off.max():+.2f} %")
-    sys.exit(f"worse than {100 * PROMISED:g} %" if worst > PROMISED else 0)
+              f"{100 * off.max():+.2f} %, least of all {all_off.min():+.2%}")
+    if worst > PROMISED or least < LEAST:
+        sys.exit(f"worse than {100 * PROMISED:g} %, or below {LEAST:g}")
 
 
 if __name__ == "__main__":
