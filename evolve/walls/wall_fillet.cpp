@@ -3,39 +3,46 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <compare>
 #include <limits>
 #include <map>
 #include <numeric>
-#include <tuple>
+#include <set>
+#include <utility>
 
 #include <Eigen/Geometry>
 
 #include "core/geometry/edge_key.h"
 #include "evolve/walls/facet_probe.h"
+#include "evolve/walls/fillet_arc.h"
 #include "evolve/walls/wall_slide.h"
 
 namespace meniscus::walls {
 
 namespace {
 
-constexpr double kOpen = 0.05;     // sine of a sector, cosine of its half:
-                                   // less is convex
-constexpr double kRoomUsed = 0.9;  // of half a sheet's width
-constexpr double kFacing = -0.25;  // cosine: ends of a sheet are opposite
-constexpr double kLongest = 20.0;  // of (offset + radius): reach
-constexpr double kReach = 3.0;     // of the longest slide
+constexpr double kOpen = 0.05;     // cosine of half a sector: less is convex
+constexpr double kRoomUsed = 0.9;  // of a sheet's width
+constexpr double kFacing = -0.25;  // cosine: lines are opposite
+constexpr double kFacingOfRim = -0.9;   // the same of a line and a rim
+constexpr double kReach = 3.0;          // of the longest slide
+constexpr double kWaysAreLonger = 1.5;  // along edges than straight
+constexpr double kAcross = 0.2;  // cosine of line and rims' plane: less is flat
 
-/// One side of a sheet at a junction: plane and direction into the sheet.
-struct SideFrame {
-  Vec3 normal = Vec3::Zero();  // sum of the facets' unit normals
-  Vec3 inward = Vec3::Zero();
-  double offset = 0.0;  // from the film, mean [length]
-  double fillet = 0.0;  // largest [length]
-  int count = 0;
+/// One side of a fan of facets at a vertex: the wall points on that side and
+/// behind it, the sheet.
+struct SideKey {
+  int point = 0;
+  int behind = 0;
+  int sheet = 0;
+  auto operator<=>(const SideKey&) const = default;
 };
 
-/// Wall point, sheet, side of the sheet.
-using SideKey = std::tuple<int, int, int>;
+struct SideFrame : LineSide {
+  int vertex = 0;  // of the film
+  int sheet = 0;
+  int count = 0;  // of facets' edges summed up in normal, inward, offset
+};
 
 struct SideAt {
   int facet = 0;
@@ -45,9 +52,8 @@ struct SideAt {
 /// An edge of a junction and one sector about it, seen from one of its sheets.
 struct SectorEdge {
   Edge film = {};
-  Edge point = {};
-  int other_sheet = 0;
-  int other_side = 0;
+  std::array<SideKey, 2> own = {};    // at its ends
+  std::array<SideKey, 2> other = {};  // the facing side's
 };
 
 class Fillets {
@@ -55,18 +61,20 @@ class Fillets {
   explicit Fillets(const FilletInput& input)
       : in_(input), x_(input.films.mesh.points) {}
 
-  Points find() {
-    moves_.assign(in_.topology.points.size(), Vec3::Zero());
+  std::vector<std::vector<WallMove>> find() {
+    moves_.resize(in_.topology.points.size());
+    along_.resize(in_.topology.points.size());
     find_edges();
     find_sectors();
     fit_fillets();
+    round_lines();
+    slide_along_lines();
     const auto sheets = static_cast<int>(in_.sheets.offset.size());
     for (int sheet = 0; sheet < sheets; ++sheet) {
       for (const int side : {0, 1}) {
         round_sheet(sheet, side);
       }
     }
-    round_junctions();
     return std::move(moves_);
   }
 
@@ -80,9 +88,12 @@ class Fillets {
     const Triangle& t = facet(f).film;
     return t[0] == v ? 0 : (t[1] == v ? 1 : 2);
   }
-  int point_of(int f, int side, int v) const {
+  SideKey key_of(int f, int side, int v) const {
     const int k = corner_of(f, v);
-    return side == 0 ? facet(f).front[k] : facet(f).back[k];
+    const int front = facet(f).front[k];
+    const int back = facet(f).back[k];
+    return side == 0 ? SideKey{front, back, in_.sheets.of[f]}
+                     : SideKey{back, front, in_.sheets.of[f]};
   }
   const WallSpec& spec_of(int f) const {
     return in_.walls[in_.films.wall[facet(f).label]];
@@ -93,12 +104,13 @@ class Fillets {
   // How far a facet's side lies from the film.
   double offset_of(int f, int side, int v) const {
     const WallShares part = shares(spec_of(f).side);
-    return (side == 0 ? part.front : part.back) * asked(f, v);
+    return (sheet_side(f, side) == 0 ? part.front : part.back) * asked(f, v);
   }
   double fillet_of(int f, int v) const {
     return spec_of(f).fillet.value_or(0.5 * asked(f, v));
   }
 
+  // --- lines and their sectors --------------------------------------------
   void find_edges() {
     for (const auto& [edge, facets] : facets_about_edges(in_.topology.facets)) {
       if (is_junction(in_.topology.facets, facets)) {
@@ -108,24 +120,25 @@ class Fillets {
   }
 
   void find_sectors() {
-    for (std::size_t e = 0; e < edges_.size(); ++e) {
-      const auto& [edge, facets] = edges_[e];
+    for (const auto& [edge, facets] : edges_) {
       std::map<Edge, std::vector<SideAt>> sides;  // by the points at both ends
       for (const int f : facets) {
         for (const int side : {0, 1}) {
-          const Edge points = {point_of(f, side, edge[0]),
-                               point_of(f, side, edge[1])};
-          sides[points].push_back({f, side});
+          sides[{key_of(f, side, edge[0]).point,
+                 key_of(f, side, edge[1]).point}]
+              .push_back({f, side});
           add_frames(f, side, edge);
         }
       }
       for (const auto& [points, pair] : sides) {
         for (std::size_t i = 0; i < 2 && pair.size() == 2; ++i) {
+          const auto keys = [&](const SideAt& at) {
+            return std::array{key_of(at.facet, at.side, edge[0]),
+                              key_of(at.facet, at.side, edge[1])};
+          };
           const SideAt& own = pair[i];
-          const SideAt& other = pair[1 - i];
           sectors_[{in_.sheets.of[own.facet], sheet_side(own.facet, own.side)}]
-              .push_back({edge, points, in_.sheets.of[other.facet],
-                          sheet_side(other.facet, other.side)});
+              .push_back({edge, keys(own), keys(pair[1 - i])});
         }
       }
     }
@@ -140,8 +153,10 @@ class Fillets {
     Vec3 inward = x_[far] - x_[edge[0]];
     inward -= along * along.dot(inward);
     for (const int v : edge) {
-      SideFrame& frame = frames_[{point_of(f, side, v), in_.sheets.of[f],
-                                  sheet_side(f, side)}];
+      SideFrame& frame = frames_[key_of(f, side, v)];
+      frame.vertex = v;
+      frame.sheet = in_.sheets.of[f];
+      frame.wall = frame.fillet_wall = in_.films.wall[facet(f).label];
       frame.normal += side == 0 ? normal : Vec3(-normal);
       frame.inward += inward.normalized();
       frame.offset += offset_of(f, side, v);
@@ -150,91 +165,337 @@ class Fillets {
     }
   }
 
-  /// Where the arc lies between two sides, in the plane across the line.
-  struct Arc {
-    Vec3 along = Vec3::UnitX();  // the line, unit
-    Vec3 normal = Vec3::Zero();  // of the own side, unit
-    Vec3 inward = Vec3::Zero();  // across both, into the own sheet, unit
-    Vec3 center = Vec3::Zero();  // from the line
-    double offset = 0.0;         // of the own side
-    double radius = 0.0;
-    double angle = 0.0;   // half of the arc's
-    double begins = 0.0;  // where it touches the own side, from the line
-    // The line's point over the own side, where that of a thicker sheet is in
-    // front of it: from there the own side comes down on a ramp of 45 degrees.
-    double excess = 0.0;
+  static OffsetPlane plane_of(const SideFrame& frame) {
+    return {frame.normal.normalized(), frame.offset / frame.count};
+  }
 
-    double length() const { return radius * angle; }
-    /// How far points at the line slide to be in the middle of the arc.
-    double slide() const { return std::max(begins - length(), 0.0); }
-    /// From where on the side is as it was.
-    double ends() const { return std::max(begins, slide() + excess); }
-
-    /// From the own side to the arc or ramp, where that runs at `way` from the
-    /// line.
-    Vec3 lift(double way) const {
-      if (radius == 0.0) {
-        return std::max(excess - std::max(way - slide(), 0.0), 0.0) * normal;
-      }
-      const double l = std::max(way - begins + length(), 0.0);
-      if (l >= length()) {
-        return Vec3::Zero();
-      }
-      const double turn = angle * (1.0 - l / length());
-      const Vec3 on_arc =
-          center - radius * (std::cos(turn) * normal + std::sin(turn) * inward);
-      return on_arc - (begins - length() + l) * inward - offset * normal;
+  /// The sides that look into the sector of each wall point.
+  std::map<int, std::vector<SideFrame*>> frames_of_points() {
+    std::map<int, std::vector<SideFrame*>> result;
+    for (auto& [key, frame] : frames_) {
+      result[key.point].push_back(&frame);
     }
+    return result;
+  }
+
+  // --- fillets that fit -----------------------------------------------------
+  /// How far a slide may go over the sheet from `p`, in the direction
+  /// `inward`: to what a disk that touches p reaches there, half of the way to
+  /// another line, all of it to a rim.
+  double room(const Sheet& sheet, const Vec3& p, const Vec3& inward) const {
+    double least = std::numeric_limits<double>::infinity();
+    const Points& x = sheet.film.points;
+    for (std::size_t e = 0; e < sheet.edges.size(); ++e) {
+      const auto [f, other] = sheet.edge_facets[e];
+      if (other >= 0) {
+        continue;
+      }
+      const auto [a, b] = sheet.edges[e];
+      const Triangle& t = sheet.film.facets[f];
+      const int far = std::accumulate(t.begin(), t.end(), 0) - a - b;
+      const Vec3 along = (x[b] - x[a]).normalized();
+      Vec3 facing = x[far] - x[a];
+      facing = (facing - along * along.dot(facing)).normalized();
+      const bool is_line =
+          lines_.count(edge_key(sheet.origin[a], sheet.origin[b])) > 0;
+      if (facing.dot(inward) > (is_line ? kFacing : kFacingOfRim)) {
+        continue;
+      }
+      for (const Vec3& q : {x[a], x[b], Vec3(0.5 * (x[a] + x[b]))}) {
+        const double ahead = (q - p).dot(inward);
+        if (ahead > 0.0) {
+          const double radius = (q - p).squaredNorm() / (2.0 * ahead);
+          least = std::min(least, is_line ? radius : 2.0 * radius);
+        }
+      }
+    }
+    return kRoomUsed * least;
+  }
+
+  // The sides of one sector have one fillet, the largest that is asked for, and
+  // no larger than all of them have room for.
+  void fit_fillets() {
+    for (const auto& [edge, facets] : edges_) {
+      lines_.insert(edge);
+    }
+    for (const auto& [point, frames] : frames_of_points()) {
+      std::vector<OffsetPlane> planes;
+      double radius = 0.0;
+      int wall = frames[0]->wall;
+      for (const SideFrame* frame : frames) {
+        planes.push_back(plane_of(*frame));
+        if (frame->fillet > radius) {
+          radius = frame->fillet;
+          wall = frame->wall;
+        }
+      }
+      const Vec3 sharp = offset_corner(planes).point;
+      for (OffsetPlane& plane : planes) {
+        plane.offset += radius;
+      }
+      const Vec3 ball = offset_corner(planes).point;
+      double part = 1.0;
+      for (const SideFrame* frame : frames) {
+        const Vec3 inward = frame->inward.normalized();
+        const double grows = (ball - sharp).dot(inward);
+        if (grows > 0.0) {
+          const double has = room(in_.sheets.offset[frame->sheet].sheet,
+                                  x_[frame->vertex], inward);
+          part = std::min(part, (has - sharp.dot(inward)) / grows);
+        }
+      }
+      for (SideFrame* frame : frames) {
+        frame->fillet = radius * std::max(part, 0.0);
+        frame->fillet_wall = wall;
+      }
+    }
+  }
+
+  // --- wall points of lines -------------------------------------------------
+  // From where the sides' planes meet to the middle of the arc.
+  void round_lines() {
+    for (const auto& [point, frames] : frames_of_points()) {
+      const double fillet = frames[0]->fillet;
+      std::vector<OffsetPlane> planes;
+      for (const SideFrame* frame : frames) {
+        planes.push_back(plane_of(*frame));
+      }
+      const Vec3 sharp = offset_corner(planes).point;
+      for (OffsetPlane& plane : planes) {
+        plane.offset += fillet;
+      }
+      const OffsetCorner ball = offset_corner(planes);
+      Vec3 normals = Vec3::Zero();
+      for (std::size_t i = 0; i < planes.size(); ++i) {
+        normals += static_cast<double>(ball.on[i]) * planes[i].normal;
+      }
+      const Vec3 out = (ball.inverse * normals).normalized();
+      const bool open = std::any_of(
+          frames.begin(), frames.end(), [&](const SideFrame* frame) {
+            return frame->inward.normalized().dot(out) < kOpen;
+          });
+      if (!open) {
+        add_move({frames[0]->fillet_wall, ball.point - fillet * out - sharp},
+                 moves_[point]);
+      }
+    }
+  }
+
+  /// Wall points of one sector along a line, from one end of it to the other.
+  struct Strand {
+    std::vector<int> points;
+    std::vector<double> way;  // from the first, along the film's edges
   };
 
-  SideFrame frame_at(const Edge& points, int sheet, int side,
-                     double part) const {
-    const SideFrame& a = frames_.at({points[0], sheet, side});
-    const SideFrame& b = frames_.at({points[1], sheet, side});
+  // Where lines end, at others or on a rim, the wall point moves along them
+  // too: so do the points behind it, to keep their order.
+  void slide_along_lines() {
+    for (const Strand& strand : strands()) {
+      const std::size_t last = strand.points.size() - 1;
+      const std::map<int, double> first_end = ahead_of_end(strand, 0, 1);
+      const std::map<int, double> last_end =
+          ahead_of_end(strand, last, last - 1);
+      const auto sum = [](const std::map<int, double>& parts) {
+        double all = 0.0;
+        for (const auto& [wall, by] : parts) {
+          all += by;
+        }
+        return all;
+      };
+      const double s0 = std::max(sum(first_end), 0.0);
+      const double s1 = std::max(sum(last_end), 0.0);
+      const double length = strand.way.back();
+      const bool is_short = kReach * (s0 + s1) > length;
+      std::vector<std::vector<WallMove>> offsets;  // before they slide
+      for (const int p : strand.points) {
+        offsets.push_back(moves_of(p));
+      }
+      for (std::size_t k = 1; k < last; ++k) {
+        const double way = strand.way[k];
+        const auto fade = [&](double slide, double from) {
+          const double reach = is_short ? length : kReach * slide;
+          return slide > 0.0 ? std::max(1.0 - from / reach, 0.0) : 0.0;
+        };
+        const double f0 = fade(s0, way);
+        const double f1 = fade(s1, length - way);
+        if (f0 > 0.0 || f1 > 0.0) {
+          slide_point(strand, k, offsets, way + f0 * s0 - f1 * s1,
+                      [&](int wall) {
+                        return f0 * part_of(first_end, wall) -
+                               f1 * part_of(last_end, wall);
+                      });
+        }
+      }
+    }
+  }
+
+  static double part_of(const std::map<int, double>& parts, int wall) {
+    const auto at = parts.find(wall);
+    return at == parts.end() ? 0.0 : at->second;
+  }
+
+  std::vector<WallMove> moves_of(int point) const {
+    std::vector<WallMove> all = in_.moves[point];
+    for (const WallMove& move : moves_[point]) {
+      add_move(move, all);
+    }
+    return all;
+  }
+
+  // To `way` along the strand; `share`: how much of that each wall makes.
+  template <class Share>
+  void slide_point(const Strand& strand, std::size_t k,
+                   const std::vector<std::vector<WallMove>>& offsets,
+                   double way, const Share& share) {
+    const std::size_t last = strand.points.size() - 1;
+    std::size_t i = 0;
+    while (i + 2 <= last && strand.way[i + 1] < way) {
+      ++i;
+    }
+    const double part = std::clamp(
+        (way - strand.way[i]) / (strand.way[i + 1] - strand.way[i]), 0.0, 1.0);
+    const int point = strand.points[k];
+    const Vec3 from = film_of(point);
+    const Vec3 by = (1.0 - part) * film_of(strand.points[i]) +
+                    part * film_of(strand.points[i + 1]) - from;
+    const double slid = way - strand.way[k];
+    std::set<int> walls;
+    for (const auto* ends : {&offsets.front(), &offsets.back(), &offsets[k]}) {
+      for (const WallMove& move : *ends) {
+        walls.insert(move.wall);
+      }
+    }
+    const int own = offsets[k].front().wall;
+    for (const int wall : walls) {
+      if (slid != 0.0 && share(wall) != 0.0) {
+        const WallMove move = {wall_elsewhere(wall, own),
+                               share(wall) / slid * by};
+        add_move(move, along_[point]);
+        add_move(move, moves_[point]);
+      }
+    }
+    // The offset there; ends have another one, of more sides.
+    const std::size_t a = std::clamp<std::size_t>(i, 1, last - 1);
+    const std::size_t b = std::clamp<std::size_t>(i + 1, 1, last - 1);
+    for (const WallMove& move : offsets[a]) {
+      add_move({move.wall, (1.0 - part) * move.by}, moves_[point]);
+    }
+    for (const WallMove& move : offsets[b]) {
+      add_move({move.wall, part * move.by}, moves_[point]);
+    }
+    for (const WallMove& move : offsets[k]) {
+      add_move({move.wall, -move.by}, moves_[point]);
+    }
+  }
+
+  const Vec3& film_of(int point) const {
+    return x_[in_.topology.points[point].vertex];
+  }
+
+  /// By wall, how far the wall point at a strand's end is ahead along it. On a
+  /// rim it is put into the plane of its films' rims first.
+  std::map<int, double> ahead_of_end(const Strand& strand, std::size_t end,
+                                     std::size_t next) {
+    const int point = strand.points[end];
+    const Vec3 along =
+        (film_of(strand.points[next]) - film_of(point)).normalized();
+    const auto rims = rims_.find(point);
+    if (rims != rims_.end() && rims->second.size() == 2) {
+      const Vec3 plane = rims->second[0].cross(rims->second[1]);
+      if (std::abs(plane.dot(along)) > kAcross) {
+        for (const WallMove& move : moves_of(point)) {
+          const double by = -move.by.dot(plane) / along.dot(plane);
+          add_move({move.wall, by * along}, moves_[point]);
+          add_move({move.wall, by * along}, along_[point]);
+        }
+      }
+    }
+    std::map<int, double> ahead;
+    for (const WallMove& move : moves_of(point)) {
+      ahead[move.wall] += move.by.dot(along);
+    }
+    return ahead;
+  }
+
+  /// Lines that close without an end have none.
+  std::vector<Strand> strands() {
+    std::map<int, std::set<int>> next;
+    for (const auto& [at, edges] : sectors_) {
+      for (const SectorEdge& edge : edges) {
+        next[edge.own[0].point].insert(edge.own[1].point);
+        next[edge.own[1].point].insert(edge.own[0].point);
+      }
+    }
+    find_rims();
+    std::map<int, int> sides;
+    for (const auto& [key, frame] : frames_) {
+      ++sides[key.point];
+    }
+    const auto is_end = [&](int point) {
+      return next.at(point).size() != 2 || sides.at(point) != 2;
+    };
+    std::vector<Strand> result;
+    for (const auto& [point, others] : next) {
+      for (const int other : is_end(point) ? others : std::set<int>()) {
+        Strand strand{.points = {point, other}, .way = {}};
+        while (!is_end(strand.points.back())) {
+          const std::set<int>& ways = next.at(strand.points.back());
+          const int before = strand.points[strand.points.size() - 2];
+          strand.points.push_back(*ways.begin() == before ? *ways.rbegin()
+                                                          : *ways.begin());
+        }
+        if (strand.points.back() < point || strand.points.size() < 3) {
+          continue;  // from its other end, or without points between
+        }
+        strand.way = {0.0};
+        for (std::size_t k = 1; k < strand.points.size(); ++k) {
+          strand.way.push_back(
+              strand.way.back() +
+              (film_of(strand.points[k]) - film_of(strand.points[k - 1]))
+                  .norm());
+        }
+        result.push_back(std::move(strand));
+      }
+    }
+    return result;
+  }
+
+  // Per wall point at which a line ends on rims: these, one per side.
+  void find_rims() {
+    for (const auto& [edge, facets] : facets_about_edges(in_.topology.facets)) {
+      if (facets.size() != 1) {
+        continue;
+      }
+      for (const int end : {0, 1}) {
+        for (const int side : {0, 1}) {
+          const SideKey key = key_of(facets[0], side, edge[end]);
+          if (frames_.count(key) > 0) {
+            rims_[key.point].push_back(
+                (x_[edge[1 - end]] - x_[edge[end]]).normalized());
+          }
+        }
+      }
+    }
+  }
+
+  // --- sides ----------------------------------------------------------------
+  LineSide side_at(const std::array<SideKey, 2>& keys, double part) const {
+    const SideFrame& a = frames_.at(keys[0]);
+    const SideFrame& b = frames_.at(keys[1]);
     const auto mean = [&](const auto& x, const auto& y) {
       return (1.0 - part) * x / a.count + part * y / b.count;
     };
-    return {.normal = mean(a.normal, b.normal),
-            .inward = mean(a.inward, b.inward),
-            .offset = mean(a.offset, b.offset),
-            .fillet = (1.0 - part) * a.fillet + part * b.fillet};
+    LineSide side = part < 0.5 ? a : b;
+    side.normal = mean(a.normal, b.normal);
+    side.inward = mean(a.inward, b.inward);
+    side.offset = mean(a.offset, b.offset);
+    side.fillet = (1.0 - part) * a.fillet + part * b.fillet;
+    return side;
   }
 
-  Arc arc_at(const SectorEdge& edge, int sheet, int side, double part) const {
-    const SideFrame own = frame_at(edge.point, sheet, side, part);
-    const SideFrame other =
-        frame_at(edge.point, edge.other_sheet, edge.other_side, part);
-    Arc arc;
-    arc.along = (x_[edge.film[1]] - x_[edge.film[0]]).normalized();
-    const auto across = [&](const Vec3& n) {
-      return Vec3((n - arc.along * arc.along.dot(n)).normalized());
-    };
-    arc.normal = across(own.normal);
-    arc.inward = across(own.inward);
-    arc.inward =
-        (arc.inward - arc.normal * arc.normal.dot(arc.inward)).normalized();
-    const Vec3 facing = across(other.normal);
-    arc.offset = own.offset;
-    arc.angle = 0.5 * std::acos(std::clamp(arc.normal.dot(facing), -1.0, 1.0));
-    // The other sheet lies behind the own side where the sector is convex.
-    if (arc.normal.dot(across(other.inward)) > kOpen) {
-      arc.radius = std::max(own.fillet, other.fillet);
-    }
-    const auto corner = [&](double more) {
-      return offset_corner(
-          {{arc.normal, own.offset + more}, {facing, other.offset + more}});
-    };
-    const OffsetCorner ball = corner(arc.radius);
-    arc.center = ball.point;
-    if (ball.on[0] == 0 || ball.on[1] == 0) {
-      arc.radius = 0.0;
-      arc.center = corner(0.0).point;
-    }
-    const double most =
-        kLongest * std::max(own.offset, other.offset) + kLongest * arc.radius;
-    arc.begins = std::min(arc.center.dot(arc.inward), most);
-    arc.excess = arc.center.dot(arc.normal) - arc.offset - arc.radius;
-    return arc;
+  FilletArc arc_at(const SectorEdge& edge, double part) const {
+    return fillet_arc(x_[edge.film[1]] - x_[edge.film[0]],
+                      side_at(edge.own, part), side_at(edge.other, part));
   }
 
   // Points of the side slide along it until the line's own are in the middle
@@ -245,70 +506,95 @@ class Fillets {
       return;
     }
     const std::vector<SectorEdge>& edges = found->second;
+    const int own_wall = frames_.at(edges.front().own[0]).wall;
     const OffsetSheet& own = in_.sheets.offset[sheet];
     const Points& film = own.sheet.film.points;
-    const SlideInput input = slide_input(edges, own.sheet, sheet, side);
+    const SlideInput input = slide_input(edges, sheet, side);
     const Slides slides = slide(input);
     const FacetProbe probe(film, own.sheet.film.facets);
-    const std::vector<int> point_at = points_of(sheet, side);
     for (std::size_t v = 0; v < film.size(); ++v) {
-      if (point_at[v] < 0 || slides.way[v] >= input.reach) {
+      if (own.points[side][v] < 0 || input.held[v] != 0 ||
+          in_.topology.junction[own.sheet.origin[v]] != 0 ||
+          slides.way[v] >= input.reach) {
         continue;
       }
-      const Place to = place_on(own, side, probe, film[v] + slides.by[v]);
-      moves_[point_at[v]] += to.offset + lift_at(edges, sheet, side, to.film) -
-                             (side == 0 ? own.sides.front : own.sides.back)[v];
+      std::vector<WallMove>& moves = moves_[own.points[side][v]];
+      Vec3 all = Vec3::Zero();
+      for (const auto& [wall, by] : slides.by) {
+        add_move({wall, by[v]}, moves);
+        all += by[v];
+      }
+      // What is left of the slide, the side being bent, is the own wall's.
+      const Place to = place_on(own, side, probe, film[v] + all);
+      const Vec3 slid =
+          to.offset - (side == 0 ? own.sides.front : own.sides.back)[v];
+      add_move({own_wall, slid - all}, moves);
+      const WallMove lift = lift_at(edges, to.film);
+      add_move({wall_elsewhere(lift.wall, own_wall), lift.by}, moves);
     }
   }
 
-  SlideInput slide_input(const std::vector<SectorEdge>& edges, const Sheet& own,
-                         int sheet, int side) const {
+  // A wall whose thickness depends on the place moves points of no others.
+  int wall_elsewhere(int wall, int own) const {
+    const PlaceField& thickness = in_.walls[wall].thickness;
+    const std::vector<int> names = thickness.formula.names_used();
+    const bool is_uniform =
+        thickness.shapes.empty() &&
+        std::all_of(names.begin(), names.end(), [](int k) { return k > 2; });
+    return is_uniform ? wall : own;
+  }
+
+  SlideInput slide_input(const std::vector<SectorEdge>& edges, int sheet,
+                         int side) const {
+    const OffsetSheet& own = in_.sheets.offset[sheet];
     struct Held {
       Mat3 matrix = Mat3::Zero();
-      Vec3 right = Vec3::Zero();
+      std::map<int, Vec3> right;  // by wall
     };
-    std::map<int, Held> held;  // per film vertex
+    const int own_wall = frames_.at(edges.front().own[0]).wall;
+    std::map<SideKey, Held> held;
     double reach = 0.0;
     for (const SectorEdge& edge : edges) {
       for (const int end : {0, 1}) {
-        const Arc arc = arc_at(edge, sheet, side, end);
-        Held& at = held[edge.film[end]];
+        const FilletArc arc = arc_at(edge, end);
+        Held& at = held[edge.own[end]];
         at.matrix += arc.inward * arc.inward.transpose();
-        at.right += arc.inward * arc.slide();
-        reach = std::max({reach, kReach * arc.slide(), arc.ends()});
+        for (const auto& [wall, by] : arc.parts) {
+          at.right.try_emplace(wall_elsewhere(wall, own_wall), Vec3::Zero())
+              .first->second += arc.inward * by;
+        }
+        reach = std::max(
+            {reach, kReach * arc.slide(), kWaysAreLonger * arc.ends()});
       }
     }
-    SlideInput input{.sheet = own,
-                     .held = std::vector<char>(own.origin.size(), 0),
-                     .slides = Points(own.origin.size(), Vec3::Zero()),
+    const std::size_t count = own.sheet.origin.size();
+    SlideInput input{.sheet = own.sheet,
+                     .held = std::vector<char>(count, 0),
+                     .slides = {},
                      .reach = reach};
-    for (std::size_t v = 0; v < own.origin.size(); ++v) {
-      const auto at = held.find(own.origin[v]);
-      if (at != held.end()) {
-        input.held[v] = 1;
-        input.slides[v] = mitre_inverse(at->second.matrix) * at->second.right;
+    const auto add = [&](int wall, std::size_t v, const Vec3& by) {
+      input.slides
+          .try_emplace(wall_elsewhere(wall, own_wall),
+                       Points(count, Vec3::Zero()))
+          .first->second[v] += by;
+      input.reach = std::max(input.reach, kReach * by.norm());
+    };
+    for (std::size_t v = 0; v < count; ++v) {
+      const SideKey key = {own.points[side][v], own.points[1 - side][v], sheet};
+      const auto at = held.find(key);
+      if (at == held.end()) {
+        continue;
+      }
+      input.held[v] = 1;
+      const Mat3 inverse = mitre_inverse(at->second.matrix);
+      for (const auto& [wall, right] : at->second.right) {
+        add(wall, v, inverse * right);
+      }
+      for (const WallMove& move : along_[key.point]) {
+        add(move.wall, v, move.by);
       }
     }
     return input;
-  }
-
-  // Per point of the sheet: the wall's over it; -1 on junctions.
-  std::vector<int> points_of(int sheet, int side) const {
-    const std::vector<int>& origin = in_.sheets.offset[sheet].sheet.origin;
-    std::map<int, int> points;  // by film vertex
-    for (int f = 0; f < static_cast<int>(in_.topology.facets.size()); ++f) {
-      for (const int v : facet(f).film) {
-        if (in_.sheets.of[f] == sheet && in_.topology.junction[v] == 0) {
-          points[v] = point_of(f, sheet_side(f, side), v);
-        }
-      }
-    }
-    std::vector<int> result(origin.size(), -1);
-    for (std::size_t v = 0; v < origin.size(); ++v) {
-      const auto at = points.find(origin[v]);
-      result[v] = at == points.end() ? -1 : at->second;
-    }
-    return result;
   }
 
   /// A place on the sheet, and the side over it.
@@ -334,138 +620,48 @@ class Fillets {
     return place;
   }
 
-  Vec3 lift_at(const std::vector<SectorEdge>& edges, int sheet, int side,
-               const Vec3& p) const {
-    double least = std::numeric_limits<double>::infinity();
-    const SectorEdge* nearest = nullptr;
-    double part = 0.0;
+  /// Of all lines near `p` the one that lifts it most.
+  WallMove lift_at(const std::vector<SectorEdge>& edges, const Vec3& p) const {
+    WallMove most;
     for (const SectorEdge& edge : edges) {
       const Vec3& a = x_[edge.film[0]];
       const Vec3 way = x_[edge.film[1]] - a;
-      const double at =
+      const double part =
           std::clamp(way.dot(p - a) / way.squaredNorm(), 0.0, 1.0);
-      const double squared = (p - a - at * way).squaredNorm();
-      if (squared < least) {
-        least = squared;
-        nearest = &edge;
-        part = at;
+      const double distance = (p - a - part * way).norm();
+      const auto ends = ends_.try_emplace(edge.own, -1.0).first;
+      if (ends->second < 0.0) {
+        ends->second =
+            std::max(arc_at(edge, 0.0).ends(), arc_at(edge, 1.0).ends());
       }
-    }
-    return arc_at(*nearest, sheet, side, part).lift(std::sqrt(least));
-  }
-
-  // --- room -----------------------------------------------------------------
-  /// Half of the way over the sheet from `p`, in the direction `inward`, to
-  /// where it ends opposite: the radius of the largest disk that touches p.
-  double room(const Sheet& sheet, const Vec3& p, const Vec3& inward) const {
-    double least = std::numeric_limits<double>::infinity();
-    const Points& x = sheet.film.points;
-    for (std::size_t e = 0; e < sheet.edges.size(); ++e) {
-      const auto [f, other] = sheet.edge_facets[e];
-      if (other >= 0) {
+      if (distance >= ends->second) {
         continue;
       }
-      const auto [a, b] = sheet.edges[e];
-      const Triangle& t = sheet.film.facets[f];
-      const int far = std::accumulate(t.begin(), t.end(), 0) - a - b;
-      const Vec3 along = (x[b] - x[a]).normalized();
-      Vec3 facing = x[far] - x[a];
-      facing = (facing - along * along.dot(facing)).normalized();
-      if (facing.dot(inward) > kFacing) {
-        continue;
-      }
-      for (const Vec3& q : {x[a], x[b], Vec3(0.5 * (x[a] + x[b]))}) {
-        const double ahead = (q - p).dot(inward);
-        if (ahead > 0.0) {
-          least = std::min(least, (q - p).squaredNorm() / (2.0 * ahead));
-        }
+      const FilletArc arc = arc_at(edge, part);
+      const Vec3 lift = arc.lift(distance);
+      if (lift.squaredNorm() > most.by.squaredNorm()) {
+        most = {arc.lift_wall, lift};
       }
     }
-    return least;
-  }
-
-  // Of one sector the sheets have one fillet, the largest that is asked for,
-  // and no larger than all of them have room for.
-  void fit_fillets() {
-    std::map<int, std::vector<std::pair<SideKey, SideFrame*>>> at;
-    for (auto& [key, frame] : frames_) {
-      at[std::get<0>(key)].emplace_back(key, &frame);
-    }
-    for (const auto& [point, frames] : at) {
-      std::vector<OffsetPlane> planes;
-      double radius = 0.0;
-      for (const auto& [key, frame] : frames) {
-        planes.push_back(
-            {frame->normal.normalized(), frame->offset / frame->count});
-        radius = std::max(radius, frame->fillet);
-      }
-      const Vec3 sharp = offset_corner(planes).point;
-      for (OffsetPlane& plane : planes) {
-        plane.offset += radius;
-      }
-      const Vec3 ball = offset_corner(planes).point;
-      double part = 1.0;
-      for (const auto& [key, frame] : frames) {
-        const Vec3 inward = frame->inward.normalized();
-        const double grows = (ball - sharp).dot(inward);
-        if (grows > 0.0) {
-          const double has =
-              kRoomUsed * room(in_.sheets.offset[std::get<1>(key)].sheet,
-                               x_[in_.topology.points[point].vertex], inward);
-          part = std::min(part, (has - sharp.dot(inward)) / grows);
-        }
-      }
-      for (const auto& [key, frame] : frames) {
-        frame->fillet = radius * std::max(part, 0.0);
-      }
-    }
-  }
-
-  // On the line itself: from the mitre to the middle of the arc.
-  void round_junctions() {
-    struct Corner {
-      std::vector<OffsetPlane> planes;
-      Points inward;
-      double fillet = 0.0;
-    };
-    std::map<int, Corner> corners;
-    for (const auto& [key, frame] : frames_) {
-      Corner& corner = corners[std::get<0>(key)];
-      corner.planes.push_back(
-          {frame.normal.normalized(), frame.offset / frame.count});
-      corner.inward.push_back(frame.inward.normalized());
-      corner.fillet = std::max(corner.fillet, frame.fillet);
-    }
-    for (auto& [point, corner] : corners) {
-      const Vec3 sharp = offset_corner(corner.planes).point;
-      for (OffsetPlane& plane : corner.planes) {
-        plane.offset += corner.fillet;
-      }
-      const OffsetCorner ball = offset_corner(corner.planes);
-      Vec3 normals = Vec3::Zero();
-      for (std::size_t i = 0; i < corner.planes.size(); ++i) {
-        normals += static_cast<double>(ball.on[i]) * corner.planes[i].normal;
-      }
-      const Vec3 out = (ball.inverse * normals).normalized();
-      const bool open =
-          std::any_of(corner.inward.begin(), corner.inward.end(),
-                      [&](const Vec3& u) { return u.dot(out) < kOpen; });
-      if (!open) {
-        moves_[point] += ball.point - corner.fillet * out - sharp;
-      }
-    }
+    return most;
   }
 
   const FilletInput& in_;
   const Points& x_;
-  Points moves_;
+  std::vector<std::vector<WallMove>> moves_;
+  std::vector<std::vector<WallMove>> along_;  // of these, along lines
   std::vector<std::pair<Edge, std::vector<int>>> edges_;
+  std::set<Edge> lines_;
   std::map<SideKey, SideFrame> frames_;
+  std::map<int, Points> rims_;
   std::map<std::pair<int, int>, std::vector<SectorEdge>> sectors_;
+  mutable std::map<std::array<SideKey, 2>, double> ends_;
 };
 
 }  // namespace
 
-Points fillet_moves(const FilletInput& input) { return Fillets(input).find(); }
+std::vector<std::vector<WallMove>> fillet_moves(const FilletInput& input) {
+  return Fillets(input).find();
+}
 
 }  // namespace meniscus::walls

@@ -18,6 +18,8 @@ namespace meniscus::walls {
 namespace {
 
 constexpr double kSpannedByEdges = 1e-4;  // of the largest eigenvalue
+constexpr double kMostRise =
+    0.08;  // of edges with bent sides: a tenth of a turn
 // Walls with nodes half way across, of the edges there.
 constexpr double kThinnestHalved = 0.5;
 constexpr double kThickestHalved = 2.0;
@@ -75,10 +77,23 @@ WallModel::WallModel(const WallFilms& films, std::vector<WallSpec> walls,
       v = id[v];
     }
   }
-  nodes_ =
-      surface_nodes(std::move(coarse), std::move(corner), topology_.middles,
-                    std::vector<char>(topology_.points.size(), 0));
+  find_straight();
+  nodes_ = surface_nodes(std::move(coarse), std::move(corner),
+                         topology_.middles, straight_);
   report();
+}
+
+/// Middles of edges too long for what they bend around, as a fillet: elements
+/// bent so far would fold at the next design.
+void WallModel::find_straight() {
+  const Points points = points_of(reference_film_, numbers(given_));
+  straight_.assign(points.size(), 0);
+  for (const auto& [edge, middle] : topology_.middles) {
+    const Vec3& a = points[edge[0]];
+    const Vec3& b = points[edge[1]];
+    const Vec3 rise = points[middle] - 0.5 * (a + b);
+    straight_[middle] = rise.norm() > kMostRise * (b - a).norm() ? 1 : 0;
+  }
 }
 
 /// Every offset as a combination of the normals and edges at its vertex.
@@ -238,9 +253,7 @@ SurfaceMesh WallModel::fine(const Points& film,
 }
 
 void WallModel::split_facets(const std::vector<char>& marked) {
-  nodes_ =
-      meniscus::split_facets(nodes_, marked, topology_.middles,
-                             std::vector<char>(topology_.points.size(), 0));
+  nodes_ = meniscus::split_facets(nodes_, marked, topology_.middles, straight_);
 }
 
 WallGradient WallModel::transpose(const Points& film,
@@ -329,7 +342,6 @@ void WallModel::through_normals(const Points& film, const Points& normals,
   }
 }
 
-/// One closed wall per region, measured and checked.
 Points WallModel::middles() const {
   const SurfaceMesh& mesh = nodes_.mesh;
   const Points points = points_of(reference_film_, numbers(given_));
@@ -383,6 +395,7 @@ Points WallModel::middles() const {
   return result;
 }
 
+/// One closed wall per region, measured and checked.
 void WallModel::report() {
   const SurfaceMesh all = fine(reference_film_, numbers(given_));
   std::vector<char> in_front(topology_.points.size(), 0);

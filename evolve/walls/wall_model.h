@@ -103,6 +103,7 @@ class WallModel {
   };
 
   void freeze_moves();
+  void find_straight();
   Follow follow(const Around& around, int vertex, const Points& normals,
                 const std::vector<WallMove>& moves) const;
   void through_normals(const Points& film, const Points& normals,
@@ -121,6 +122,7 @@ class WallModel {
   std::vector<WallSpec> specs_;  // given_, on the film
   WallReference reference_;
   std::vector<Follow> follow_;  // per wall point
+  std::vector<char> straight_;  // per wall point, see find_straight()
   SurfaceNodes nodes_;
   std::vector<ThickWall> walls_;
 };

@@ -1,7 +1,9 @@
 #include "evolve/walls/wall_offset.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -126,6 +128,17 @@ Points moved(const Sheet& sheet, const std::vector<Vec3>& direction,
 }
 
 }  // namespace
+
+void add_move(const WallMove& move, std::vector<WallMove>& moves) {
+  const auto same =
+      std::find_if(moves.begin(), moves.end(),
+                   [&](const WallMove& m) { return m.wall == move.wall; });
+  if (same == moves.end()) {
+    moves.push_back(move);
+  } else {
+    same->by += move.by;
+  }
+}
 
 Mat3 mitre_inverse(const Mat3& matrix, double spanned) {
   const auto eigen = symmetric_eigen(matrix);

@@ -1,6 +1,7 @@
 /// How far and where a sheet's vertices go to become a wall's two sides.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "evolve/walls/jet_fit.h"
@@ -8,6 +9,15 @@
 #include "evolve/walls/thicken.h"
 
 namespace meniscus::walls {
+
+/// What one wall's thickness moves a point by.
+struct WallMove {
+  int wall = 0;
+  Vec3 by = Vec3::Zero();  // [length]
+};
+
+/// Adds it to the moves of its wall.
+void add_move(const WallMove& move, std::vector<WallMove>& moves);
 
 /// Parts of the thickness that lie in front of the film and behind it.
 struct WallShares {
@@ -57,9 +67,12 @@ struct OffsetCorner {
 /// least-squares one of all.
 OffsetCorner offset_corner(const std::vector<OffsetPlane>& planes);
 
+/// A film cut along its junctions, where it has one vertex for each fan of its
+/// facets.
 struct OffsetSheet {
-  Sheet sheet;
+  Sheet sheet;  // `origin`: film vertices
   OffsetSides sides;
+  std::array<std::vector<int>, 2> points;  // the wall's, on front and back
 };
 
 /// Moves the sheet by `asked` (per vertex, [length]) and corrects the moves by

@@ -106,20 +106,42 @@ class Reference {
  private:
   int wall_of(int f) const { return films_.wall[topology_.facets[f].label]; }
 
-  SurfaceMesh mesh_of(const SheetFacets& sheet) const {
+  /// The facets of a sheet, with a vertex for each fan of them: each pair of
+  /// wall points.
+  struct CutMesh {
     SurfaceMesh mesh;
-    mesh.points = films_.mesh.points;
-    mesh.labels = films_.mesh.labels;
+    std::vector<int> vertex;  // of the film
+    std::array<std::vector<int>, 2> points;
+  };
+  CutMesh cut_mesh(const SheetFacets& sheet) const {
+    CutMesh cut;
+    cut.mesh.labels = films_.mesh.labels;
+    std::map<std::array<int, 2>, int> id;
     for (std::size_t i = 0; i < sheet.facets.size(); ++i) {
       const WallFacet& facet = topology_.facets[sheet.facets[i]];
-      Triangle t = facet.film;
+      Triangle t;
+      for (int k = 0; k < 3; ++k) {
+        std::array<int, 2> points = {facet.front[k], facet.back[k]};
+        if (sheet.flipped[i] != 0) {
+          std::swap(points[0], points[1]);
+        }
+        const auto [at, is_new] =
+            id.try_emplace(points, static_cast<int>(cut.vertex.size()));
+        if (is_new) {
+          cut.mesh.points.push_back(films_.mesh.points[facet.film[k]]);
+          cut.vertex.push_back(facet.film[k]);
+          cut.points[0].push_back(points[0]);
+          cut.points[1].push_back(points[1]);
+        }
+        t[k] = at->second;
+      }
       if (sheet.flipped[i] != 0) {
         std::swap(t[1], t[2]);
       }
-      mesh.facets.push_back(t);
-      mesh.facet_label.push_back(facet.label);
+      cut.mesh.facets.push_back(t);
+      cut.mesh.facet_label.push_back(facet.label);
     }
-    return mesh;
+    return cut;
   }
 
   /// The facets of sheets that share no point with this one.
@@ -151,7 +173,14 @@ class Reference {
   void offset(const SheetFacets& facets, const SurfaceMesh& others) {
     const int wall = wall_of(facets.facets[0]);
     const WallSide side = walls_[wall].side;
-    Sheet sheet = make_sheet(mesh_of(facets));
+    const CutMesh cut = cut_mesh(facets);
+    Sheet sheet = make_sheet(cut.mesh);
+    std::array<std::vector<int>, 2> points;
+    for (int& v : sheet.origin) {
+      points[0].push_back(cut.points[0][v]);
+      points[1].push_back(cut.points[1][v]);
+      v = cut.vertex[v];
+    }
     std::vector<double> asked;
     asked.reserve(sheet.origin.size());
     for (const int v : sheet.origin) {
@@ -172,24 +201,12 @@ class Reference {
       at = std::min(at, safe_at[i]);
     }
     note(walls_[wall].region, sides, safe);
-    std::vector<int> local(films_.mesh.points.size(), -1);
-    for (std::size_t i = 0; i < sheet.origin.size(); ++i) {
-      local[sheet.origin[i]] = static_cast<int>(i);
+    for (std::size_t v = 0; v < sheet.origin.size(); ++v) {
+      const Vec3& x = sheet.film.points[v];
+      set(points[0][v], {wall, sides.front[v] - x});
+      set(points[1][v], {wall, sides.back[v] - x});
     }
-    for (std::size_t i = 0; i < facets.facets.size(); ++i) {
-      const WallFacet& facet = topology_.facets[facets.facets[i]];
-      const bool flipped = facets.flipped[i] != 0;
-      for (int k = 0; k < 3; ++k) {
-        const int v = facet.film[k];
-        const int at = local[v];
-        const Vec3& x = films_.mesh.points[v];
-        const Vec3 front = sides.front[at] - x;
-        const Vec3 back = sides.back[at] - x;
-        set(facet.front[k], {wall, flipped ? back : front});
-        set(facet.back[k], {wall, flipped ? front : back});
-      }
-    }
-    offset_.push_back({std::move(sheet), std::move(sides)});
+    offset_.push_back({std::move(sheet), std::move(sides), std::move(points)});
   }
 
   void set(int point, const WallMove& move) {
@@ -228,8 +245,9 @@ class Reference {
     double offset = 0.0;          // [length]
   };
 
-  /// By sheet and its side, per wall point.
-  using Corners = std::map<int, std::map<std::pair<int, int>, SheetSide>>;
+  /// Per wall point the sides that look into its sector, one for each fan: by
+  /// the wall point behind and the sheet.
+  using Corners = std::map<int, std::map<std::array<int, 2>, SheetSide>>;
 
   void add_corner(const WallSheets& sheets, int f, int k, Corners& corners) {
     const WallFacet& facet = topology_.facets[f];
@@ -243,11 +261,12 @@ class Reference {
     const WallShares part = shares(walls_[wall].side);
     for (const bool front : {true, false}) {
       const int point = front ? facet.front[k] : facet.back[k];
-      const int sheet_side = front == (sheets.flipped[f] != 0) ? 1 : 0;
-      SheetSide& side = corners[point][{sheets.of[f], sheet_side}];
+      const int behind = front ? facet.back[k] : facet.front[k];
+      const bool sheet_front = front != (sheets.flipped[f] != 0);
+      SheetSide& side = corners[point][{behind, sheets.of[f]}];
       side.wall = wall;
       side.normals += (front ? angle : -angle) * area.normalized();
-      side.offset = (front ? part.front : part.back) * asked_.at(wall, v);
+      side.offset = (sheet_front ? part.front : part.back) * asked_.at(wall, v);
     }
   }
 
@@ -268,15 +287,12 @@ class Reference {
         walls.push_back(side.wall);
       }
       const OffsetCorner corner = offset_corner(planes);
-      std::map<int, Vec3> moves;  // per wall
       for (std::size_t i = 0; i < planes.size(); ++i) {
-        Vec3& move = moves.try_emplace(walls[i], Vec3::Zero()).first->second;
         if (corner.on[i] != 0) {
-          move += corner.inverse * planes[i].normal * planes[i].offset;
+          add_move(
+              {walls[i], corner.inverse * planes[i].normal * planes[i].offset},
+              result_.moves[point]);
         }
-      }
-      for (const auto& [wall, by] : moves) {
-        result_.moves[point].push_back({wall, by});
       }
     }
   }
@@ -295,13 +311,12 @@ class Reference {
   }
 
   void round(const WallSheets& sheets) {
-    const Points added =
-        fillet_moves({topology_, films_, sheets, walls_,
-                      [&](int wall, int v) { return asked_.at(wall, v); }});
+    const std::vector<std::vector<WallMove>> added = fillet_moves(
+        {topology_, films_, sheets, walls_,
+         [&](int wall, int v) { return asked_.at(wall, v); }, result_.moves});
     for (std::size_t p = 0; p < added.size(); ++p) {
-      std::vector<WallMove>& moves = result_.moves[p];
-      for (WallMove& move : moves) {
-        move.by += added[p] / static_cast<double>(moves.size());
+      for (const WallMove& move : added[p]) {
+        add_move(move, result_.moves[p]);
       }
     }
   }

@@ -4,16 +4,11 @@
 #include <vector>
 
 #include "evolve/walls/thicken.h"
+#include "evolve/walls/wall_offset.h"
 #include "evolve/walls/wall_spec.h"
 #include "evolve/walls/wall_topology.h"
 
 namespace meniscus::walls {
-
-/// What one wall's thickness moves a point by.
-struct WallMove {
-  int wall = 0;
-  Vec3 by = Vec3::Zero();  // [length]
-};
 
 /// What a wall asks for at a place [length]. Throws InvalidInput, naming wall
 /// and place, where that is not above 0.
@@ -35,8 +30,8 @@ struct WallReference {
 
 /// Films are cut along their junctions into sheets, and those offset as
 /// thicken() does. On a junction line or point each sector's point is where
-/// the offset planes of its films meet (of more than three the least-squares
-/// one), which joins the sheets' sides without a gap. Throws InvalidInput for a
+/// no offset plane of its films is behind (offset_corner), which joins the
+/// sheets' sides without a gap. Throws InvalidInput for a
 /// thickness that is not above 0 everywhere; MeshError as make_sheet(), and for
 /// a film with one side only.
 WallReference wall_reference(const WallTopology& topology,

@@ -1,5 +1,7 @@
 #include "evolve/walls/wall_slide.h"
 
+#include <algorithm>
+#include <functional>
 #include <queue>
 #include <utility>
 
@@ -70,35 +72,47 @@ void keep_to_rims(const SlideInput& input, Points& slides) {
 Slides slide(const SlideInput& input) {
   const Sheet& sheet = input.sheet;
   const std::size_t count = sheet.film.points.size();
-  Slides result{.by = Points(count), .way = ways_from_held(input)};
-  HarmonicProblem problem{
-      .points = sheet.film.points,
-      .mesh = sheet.film.facets,
-      .facets = {},
-      .fixed = std::vector<char>(count, 0),
-      .values = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(count), 3)};
-  bool is_free = false;
-  for (std::size_t v = 0; v < count; ++v) {
-    problem.values.row(static_cast<Eigen::Index>(v)) = input.slides[v];
-    problem.fixed[v] =
-        input.held[v] != 0 || result.way[v] >= input.reach ? 1 : 0;
-    is_free = is_free || problem.fixed[v] == 0;
+  Slides result{.by = input.slides, .way = ways_from_held(input)};
+  const auto columns = 3 * static_cast<Eigen::Index>(input.slides.size());
+  HarmonicProblem problem{.points = sheet.film.points,
+                          .mesh = sheet.film.facets,
+                          .facets = {},
+                          .fixed = std::vector<char>(count, 1),
+                          .values = Eigen::MatrixXd::Zero(
+                              static_cast<Eigen::Index>(count), columns)};
+  Eigen::Index column = 0;
+  for (const auto& [wall, slides] : input.slides) {
+    for (std::size_t v = 0; v < count; ++v) {
+      problem.values.block<1, 3>(static_cast<Eigen::Index>(v), column) =
+          slides[v].transpose();
+    }
+    column += 3;
   }
-  for (std::size_t f = 0; f < sheet.film.facets.size(); ++f) {
-    for (const int v : sheet.film.facets[f]) {
-      if (problem.fixed[v] == 0) {
-        problem.facets.push_back(static_cast<int>(f));
-        break;
-      }
+  for (std::size_t v = 0; v < count; ++v) {
+    if (input.held[v] == 0 && result.way[v] < input.reach) {
+      problem.fixed[v] = 0;
     }
   }
-  if (is_free) {
+  for (std::size_t f = 0; f < sheet.film.facets.size(); ++f) {
+    const Triangle& t = sheet.film.facets[f];
+    if (std::any_of(t.begin(), t.end(),
+                    [&](int v) { return problem.fixed[v] == 0; })) {
+      problem.facets.push_back(static_cast<int>(f));
+    }
+  }
+  if (!problem.facets.empty()) {
     problem.values = harmonic(problem);
   }
-  for (std::size_t v = 0; v < count; ++v) {
-    result.by[v] = problem.values.row(static_cast<Eigen::Index>(v)).transpose();
+  column = 0;
+  for (auto& [wall, slides] : result.by) {
+    for (std::size_t v = 0; v < count; ++v) {
+      slides[v] =
+          problem.values.block<1, 3>(static_cast<Eigen::Index>(v), column)
+              .transpose();
+    }
+    keep_to_rims(input, slides);
+    column += 3;
   }
-  keep_to_rims(input, result.by);
   return result;
 }
 

@@ -1,6 +1,7 @@
 /// A sheet's points slid along it, away from its junctions.
 #pragma once
 
+#include <map>
 #include <vector>
 
 #include "evolve/walls/sheet.h"
@@ -10,15 +11,16 @@ namespace meniscus::walls {
 struct SlideInput {
   const Sheet& sheet;
   std::vector<char> held;  // per point: it is on a junction
-  Points slides;           // of these, along the sheet [length]; 0 elsewhere
+  // By wall, what it makes these slide along the sheet [length]; 0 elsewhere.
+  std::map<int, Points> slides;
   // Where nothing slides any more, at least so far from the junctions
   // [length]; above the largest slide, so that nothing folds.
   double reach = 0.0;
 };
 
 struct Slides {
-  Points by;                // per point [length]
-  std::vector<double> way;  // from the junctions along edges, at most `reach`
+  std::map<int, Points> by;  // by wall, per point [length]
+  std::vector<double> way;   // from the junctions along edges, at most `reach`
 };
 
 /// Per point how far it slides: harmonic on the sheet between its junctions

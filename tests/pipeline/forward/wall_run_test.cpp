@@ -144,7 +144,6 @@ TEST(WallRuns, OfAPipeAreLames) {
   EXPECT_NEAR(stress.max_von_mises, largest, 0.05 * largest);
 }
 
-// The pressure inside widens the pipe (above), by that name too.
 // Whatever the edges, up to twice the wall's thickness.
 TEST(WallRuns, HaveTwoElementsAcross) {
   std::mt19937 random(7);
@@ -180,6 +179,7 @@ TEST(WallRuns, HaveTwoElementsAcross) {
   }
 }
 
+// The pressure inside widens the pipe (above), by that name too.
 TEST(WallRuns, NameTheirSidesByInsideAndOutside) {
   const auto surface_of = [](const std::string& name) {
     return case_of(changed(cylinder(), "on = \"skin/back\", pressure",
