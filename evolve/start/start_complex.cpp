@@ -596,7 +596,9 @@ class StartBuilder {
       result_.bodies.push_back(films::make_body(body, result_.mesh));
     }
     for (const films::CapSpec& cap : system_.caps) {
-      films::require_body(system_, cap.name);
+      if (!cap.wall || !cap.wall->cuts) {  // films may slide on a plane alone
+        films::require_body(system_, cap.name);
+      }
     }
     films::orient_bodies(result_);
     if (turn_shared_disks(raised, result_)) {

@@ -493,7 +493,11 @@ void slide_on_wall(const films::FilmSystem& system, const films::CapSpec& cap,
     require_one_film(system, cap, curves[k]);
     require_on_wall(cap, curves[k], rims[k], complex.mesh.points);
   }
-  if (area_vector(complex.mesh, label).dot(n) < 0.0) {
+  const bool of_body = std::any_of(system.bodies.begin(), system.bodies.end(),
+                                   [&](const films::BodySpec& body) {
+                                     return body.is_enclosed_by(cap.name);
+                                   });
+  if (of_body && area_vector(complex.mesh, label).dot(n) < 0.0) {
     n = -n;
   }
   const auto bent = wall_beside(cap, places_of(rims, complex.mesh.points));

@@ -8,6 +8,7 @@
 
 #include "core/math/dense.h"
 #include "evolve/walls/facet_probe.h"
+#include "evolve/walls/wall_planes.h"
 
 namespace meniscus::walls {
 
@@ -18,6 +19,7 @@ constexpr double kFlatHold = 1e-6;   // of the tangential move, see header
 constexpr double kLargestFix = 1.5;  // of a correction, per pass
 constexpr double kSlow = 0.95;       // a pass that gains less is the last
 constexpr double kTotalFix = 4.0;    // of all corrections together
+constexpr double kInEdge = 1e-9;     // of a facet's area
 
 double corner_angle(const Sheet& sheet, int facet, int v) {
   const Triangle& t = sheet.film.facets[facet];
@@ -36,8 +38,9 @@ Vec3 mitre(const Mat3& matrix, const Vec3& right) {
 /// Measures a wall; per vertex the range of measured / asked around it.
 class Gauge {
  public:
-  Gauge(const Sheet& sheet, const std::vector<double>& asked)
-      : sheet_(sheet), asked_(asked) {}
+  Gauge(const Sheet& sheet, const std::vector<double>& asked,
+        const SheetEnds& ends)
+      : sheet_(sheet), asked_(asked), ends_(ends) {}
 
   void measure(const Points& front, const Points& back) {
     low_.assign(asked_.size(), std::numeric_limits<double>::infinity());
@@ -71,7 +74,11 @@ class Gauge {
     asked /= count;
     // The same place on the other side is near the nearest.
     const double bound = (across / count - p).norm();
-    const double value = probe.nearest(p, bound).distance;
+    const FacetProbe::Hit hit = probe.nearest(p, bound);
+    if (hit.facet >= 0 && is_cut(other, hit)) {
+      return;
+    }
+    const double value = hit.distance;
     const double ratio = value / asked;
     if (ratio < least_) {
       least_ = ratio;
@@ -85,6 +92,27 @@ class Gauge {
       low_[v] = std::min(low_[v], ratio);
       high_[v] = std::max(high_[v], ratio);
     }
+  }
+
+  /// Does the place lie between corners that stay in planes?
+  bool is_cut(const Points& points, const FacetProbe::Hit& hit) const {
+    if (ends_.empty()) {
+      return false;
+    }
+    const Triangle& t = sheet_.film.facets[hit.facet];
+    const double all =
+        (points[t[1]] - points[t[0]]).cross(points[t[2]] - points[t[0]]).norm();
+    bool cut = false;
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 a = points[t[(k + 1) % 3]] - hit.point;
+      const Vec3 b = points[t[(k + 2) % 3]] - hit.point;
+      const bool counts = a.cross(b).norm() > kInEdge * all;
+      if (counts && !ends_[t[k]]) {
+        return false;
+      }
+      cut = cut || counts;
+    }
+    return cut;
   }
 
   void side(const Points& points, const Points& other) {
@@ -102,6 +130,7 @@ class Gauge {
 
   const Sheet& sheet_;
   const std::vector<double>& asked_;
+  const SheetEnds& ends_;
   std::vector<double> low_;
   std::vector<double> high_;
   double least_ = 0.0;
@@ -149,10 +178,17 @@ WallShares shares(WallSide side) {
 
 std::vector<Vec3> offset_directions(const Sheet& sheet,
                                     const std::vector<Jet>& jets,
-                                    const std::vector<double>& asked) {
+                                    const std::vector<double>& asked,
+                                    const SheetEnds& ends) {
   std::vector<Vec3> directions;
   directions.reserve(jets.size());
   for (int v = 0; v < static_cast<int>(jets.size()); ++v) {
+    const bool slides = !ends.empty() && ends[v];
+    if (slides && sheet.on_crease[v] == 0) {
+      const Vec3& n = jets[v].normal;
+      directions.push_back(in_planes(*ends[v], n, n));
+      continue;
+    }
     Mat3 matrix = Mat3::Zero();
     Vec3 right = Vec3::Zero();
     for (int k = sheet.facet_start[v]; k < sheet.facet_start[v + 1]; ++k) {
@@ -163,7 +199,9 @@ std::vector<Vec3> offset_directions(const Sheet& sheet,
       right += weight * n;
     }
     if (sheet.on_crease[v] != 0) {
-      directions.push_back(mitre(matrix, right));
+      directions.push_back(
+          slides ? mitre(*ends[v] * matrix * *ends[v], *ends[v] * right)
+                 : mitre(matrix, right));
       continue;
     }
     const Vec3& n = jets[v].normal;
@@ -178,10 +216,10 @@ std::vector<Vec3> offset_directions(const Sheet& sheet,
 
 OffsetSides offset_sides(const Sheet& sheet, const std::vector<Vec3>& direction,
                          const std::vector<double>& asked,
-                         const ThickenOptions& options) {
+                         const ThickenOptions& options, const SheetEnds& ends) {
   const WallShares part = shares(options.side);
   std::vector<double> distance = asked;
-  Gauge gauge(sheet, asked);
+  Gauge gauge(sheet, asked, ends);
   OffsetSides best;
   double best_error = std::numeric_limits<double>::infinity();
   for (int pass = 0; pass <= options.max_corrections; ++pass) {
@@ -199,7 +237,7 @@ OffsetSides offset_sides(const Sheet& sheet, const std::vector<Vec3>& direction,
     }
     for (std::size_t v = 0; v < distance.size(); ++v) {
       // On a crease the mitre is the answer: its tip is further away.
-      if (sheet.on_crease[v] == 0) {
+      if (sheet.on_crease[v] == 0 && (ends.empty() || !ends[v])) {
         const double fix = std::clamp(1.0 / gauge.middle(static_cast<int>(v)),
                                       1.0 / kLargestFix, kLargestFix);
         distance[v] = std::clamp(distance[v] * fix, asked[v] / kTotalFix,

@@ -1,6 +1,7 @@
 /// How far and where a sheet's vertices go to become a wall's two sides.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "evolve/walls/jet_fit.h"
@@ -21,15 +22,21 @@ WallShares shares(WallSide side);
 /// n . d = h the point d where they meet.
 Mat3 mitre_inverse(const Mat3& matrix, double spanned = 0.05);
 
+/// Per vertex of a sheet that slides on planes the projector onto the
+/// directions which these leave (WallPlanes::along); empty: it slides nowhere.
+using SheetEnds = std::vector<std::optional<Mat3>>;
+
 /// Per vertex the move for an offset by 1: the solution of n_f . d = 1 over
 /// its facets, by corner angle in the least-squares sense; on a crease in the
 /// space that the facets' normals span clearly, elsewhere with the part off the
 /// jet's normal held back by weight (k t)^2: with t far below the edges the
 /// facets' planes alone count, and a thick wall keeps to the normal, without
-/// which its compressed side folds.
+/// which its compressed side folds. Where the sheet slides the move is the one
+/// in the plane that leaves the jet's tangent plane by 1.
 std::vector<Vec3> offset_directions(const Sheet& sheet,
                                     const std::vector<Jet>& jets,
-                                    const std::vector<double>& asked);
+                                    const std::vector<double>& asked,
+                                    const SheetEnds& ends = {});
 
 struct OffsetSides {
   Points front;
@@ -40,10 +47,13 @@ struct OffsetSides {
 };
 
 /// Moves the sheet by `asked` (per vertex, [length]) and corrects the moves by
-/// the thickness measured; the best state met is returned.
+/// the thickness measured; the best state met is returned. A side that is
+/// nearest where it ends in a plane is cut there: that is no thickness, and
+/// moves in planes are not corrected.
 OffsetSides offset_sides(const Sheet& sheet, const std::vector<Vec3>& direction,
                          const std::vector<double>& asked,
-                         const ThickenOptions& options);
+                         const ThickenOptions& options,
+                         const SheetEnds& ends = {});
 
 /// What else is in a wall's way, and whether all of it is wanted.
 struct SafeOptions {

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "evolve/walls/wall_ends.h"
 #include "evolve/walls/wall_fillet.h"
 #include "evolve/walls/wall_offset.h"
 #include "evolve/walls/wall_sheets.h"
@@ -187,8 +188,11 @@ class Reference {
     const std::vector<Jet> jets = fit_jets(sheet);
     ThickenOptions options;
     options.side = side;
-    const OffsetSides sides = offset_sides(
-        sheet, offset_directions(sheet, jets, asked), asked, options);
+    const SheetEnds ends = ends_of(sheet);
+    OffsetSides sides =
+        offset_sides(sheet, offset_directions(sheet, jets, asked, ends), asked,
+                     options, ends);
+    make_room(sheet, jets, ends, sides);
     std::vector<double> safe_at;
     SafeThickness safe = safe_thickness(
         sheet, jets, asked, side,
@@ -216,6 +220,16 @@ class Reference {
         set(facet.back[k], v, walls.at(v), asked[at], flipped ? front : back);
       }
     }
+  }
+
+  SheetEnds ends_of(const Sheet& sheet) const {
+    SheetEnds ends;
+    if (!films_.planes.at.empty()) {
+      for (const int v : sheet.origin) {
+        ends.push_back(films_.planes.along(v));
+      }
+    }
+    return ends;
   }
 
   void set(int point, int v, const std::set<int>& walls, double asked,
@@ -293,7 +307,9 @@ class Reference {
       }
     }
     for (const auto& [point, sector] : sectors) {
-      const Mat3 inverse = mitre_inverse(sector.matrix);
+      const Mat3 along =
+          films_.planes.along(sector.vertex).value_or(Mat3::Identity());
+      const Mat3 inverse = mitre_inverse(along * sector.matrix * along) * along;
       for (const auto& [wall, right] : sector.right) {
         result_.moves[point].push_back({wall, inverse * right});
       }
@@ -315,8 +331,11 @@ class Reference {
                       [&](int wall, int v) { return asked_.at(wall, v); }});
     for (std::size_t p = 0; p < added.size(); ++p) {
       std::vector<WallMove>& moves = result_.moves[p];
+      const int v = topology_.points[p].vertex;
+      const auto along = v < 0 ? std::nullopt : films_.planes.along(v);
       for (WallMove& move : moves) {
-        move.by += added[p] / static_cast<double>(moves.size());
+        const Vec3 by = added[p] / static_cast<double>(moves.size());
+        move.by += along ? Vec3(*along * by) : by;
       }
     }
   }

@@ -258,12 +258,16 @@ void check_wetted_walls(const Case& input, CaseProblems& problems) {
   for (const WallEntry& wall : input.walls) {
     const std::vector<std::string> curves = curves_of_wall(input, wall);
     for (const CapEntry& cap : input.caps) {
-      if (cap.wetted && is_among(curves, cap.spec.curve)) {
+      const std::vector<std::string> rims = cap.spec.curves();
+      if (cap.wetted && cap.wetted->kind != films::WallKind::Plane &&
+          std::any_of(rims.begin(), rims.end(), [&](const std::string& rim) {
+            return is_among(curves, rim);
+          })) {
         problems.add(
             wall.line,
-            fmt::format("walls.{} is of a film that slides on the wall of "
-                        "'{}', which the rim of a film with a thickness would "
-                        "leave; make '{}' a cap, or fill a body instead",
+            fmt::format("walls.{} is of a film that slides on the bent wall of "
+                        "'{}'; films with a thickness slide on planes only: "
+                        "make '{}' a cap, or fill a body instead",
                         wall.name, cap.spec.name, cap.spec.name));
       }
     }

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "evolve/start/wetted_faces.h"
+#include "pipeline/case_data/case_symmetry.h"
 
 namespace meniscus::case_data {
 
@@ -99,7 +100,10 @@ films::FilmWall wall_of(const Case& input, const CapEntry& cap,
   films::FilmWall wall{.at = values.at(wetted.at),
                        .normal = values.at(wetted.normal),
                        .cuts = wetted.cuts,
-                       .kind = wetted.kind};
+                       .kind = wetted.kind,
+                       .rim = cap.symmetry < 0
+                                  ? "rim:" + cap.spec.name
+                                  : wall_end("", cap.symmetry).substr(1)};
   if (wetted.kind == films::WallKind::Sphere) {
     wall.normal = Vec3::UnitZ();
   } else if (!values.are_rates() && !(wall.normal.norm() > 0.0)) {
