@@ -6,35 +6,31 @@ namespace meniscus::walls {
 
 namespace {
 
-constexpr double kShiftReach = 3.0;  // x the larger shift
-constexpr double kSquare = 1e-3;     // of the thickness: no shift
+constexpr double kShiftReach = 3.0;  // x the shift
+constexpr double kSquareEnd = 1e-3;  // of the offset: no shift
 
-/// How far an end's points have left their offsets along the film.
+/// How far an end's point has left its offset along the film.
 struct Shift {
   int vertex = 0;
-  Vec3 front, back;
+  Vec3 by = Vec3::Zero();
   double reach = 0.0;  // [length]
 };
 
-Vec3 along_film(const Jet& jet, const Vec3& by) {
-  return by - jet.normal.dot(by) * jet.normal;
+Vec3 across(const Vec3& normal, const Vec3& by) {
+  return by - normal.dot(by) * normal;
 }
 
-std::vector<Shift> find_shifts(const Sheet& sheet, const std::vector<Jet>& jets,
-                               const SheetEnds& ends,
-                               const OffsetSides& sides) {
+std::vector<Shift> find_shifts(const Sheet& sheet, const SheetEnds& ends,
+                               const Points& side) {
   std::vector<Shift> shifts;
-  for (std::size_t i = 0; i < ends.size(); ++i) {
-    if (!ends[i] || sheet.on_crease[i] != 0) {
+  for (int v = 0; v < static_cast<int>(ends.along.size()); ++v) {
+    if (!ends.slides(v) || sheet.on_crease[v] != 0) {
       continue;
     }
-    const Vec3& x = sheet.film.points[i];
-    const Vec3 front = along_film(jets[i], sides.front[i] - x);
-    const Vec3 back = along_film(jets[i], sides.back[i] - x);
-    const double larger = std::max(front.norm(), back.norm());
-    if (larger > kSquare * (sides.front[i] - sides.back[i]).norm()) {
-      shifts.push_back(
-          {static_cast<int>(i), front, back, kShiftReach * larger});
+    const Vec3 move = side[v] - sheet.film.points[v];
+    const Vec3 by = across(ends.normals[v], move);
+    if (by.norm() > kSquareEnd * move.norm()) {
+      shifts.push_back({v, by, kShiftReach * by.norm()});
     }
   }
   return shifts;
@@ -42,23 +38,31 @@ std::vector<Shift> find_shifts(const Sheet& sheet, const std::vector<Jet>& jets,
 
 }  // namespace
 
-void make_room(const Sheet& sheet, const std::vector<Jet>& jets,
-               const SheetEnds& ends, OffsetSides& sides) {
-  const std::vector<Shift> shifts = find_shifts(sheet, jets, ends, sides);
+SheetEnds ends_of(const Sheet& sheet, const std::vector<Jet>& jets,
+                  const WallPlanes& planes) {
+  SheetEnds ends;
+  for (std::size_t i = 0; i < jets.size() && !planes.at.empty(); ++i) {
+    ends.along.push_back(planes.along(sheet.origin[i]));
+    ends.normals.push_back(jets[i].normal);
+  }
+  return ends;
+}
+
+void make_room(const Sheet& sheet, const SheetEnds& ends, Points& side) {
+  const std::vector<Shift> shifts = find_shifts(sheet, ends, side);
   const Points& x = sheet.film.points;
-  for (std::size_t i = 0; i < ends.size() && !shifts.empty(); ++i) {
-    if (ends[i]) {
+  for (int v = 0; v < static_cast<int>(ends.along.size()); ++v) {
+    if (ends.slides(v) || shifts.empty()) {
       continue;
     }
     const auto away = [&](const Shift& shift) {
-      return (x[i] - x[shift.vertex]).norm() / shift.reach;
+      return (x[v] - x[shift.vertex]).norm() / shift.reach;
     };
     const Shift& nearest = *std::min_element(
         shifts.begin(), shifts.end(),
         [&](const Shift& a, const Shift& b) { return away(a) < away(b); });
-    const double share = std::max(0.0, 1.0 - away(nearest));
-    sides.front[i] += share * along_film(jets[i], nearest.front);
-    sides.back[i] += share * along_film(jets[i], nearest.back);
+    side[v] += std::max(0.0, 1.0 - away(nearest)) *
+               across(ends.normals[v], nearest.by);
   }
 }
 

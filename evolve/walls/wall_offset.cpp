@@ -8,7 +8,6 @@
 
 #include "core/math/dense.h"
 #include "evolve/walls/facet_probe.h"
-#include "evolve/walls/wall_planes.h"
 
 namespace meniscus::walls {
 
@@ -33,6 +32,10 @@ Vec3 mitre(const Mat3& matrix, const Vec3& right) {
   const Vec3 d = mitre_inverse(matrix) * right;
   const double length = d.norm();
   return length > kLongestMitre ? Vec3(d * (kLongestMitre / length)) : d;
+}
+
+Vec3 mitre_in(const Mat3& along, const Mat3& matrix, const Vec3& right) {
+  return mitre(along * matrix * along, along * right);
 }
 
 /// Measures a wall; per vertex the range of measured / asked around it.
@@ -75,7 +78,11 @@ class Gauge {
     // The same place on the other side is near the nearest.
     const double bound = (across / count - p).norm();
     const FacetProbe::Hit hit = probe.nearest(p, bound);
-    if (hit.facet >= 0 && is_cut(other, hit)) {
+    const bool cut = hit.facet >= 0
+                         ? is_cut(other, hit)
+                         : std::all_of(corners.begin(), corners.end(),
+                                       [&](int v) { return ends_.slides(v); });
+    if (cut) {
       return;
     }
     const double value = hit.distance;
@@ -96,7 +103,7 @@ class Gauge {
 
   /// Does the place lie between corners that stay in planes?
   bool is_cut(const Points& points, const FacetProbe::Hit& hit) const {
-    if (ends_.empty()) {
+    if (ends_.along.empty()) {
       return false;
     }
     const Triangle& t = sheet_.film.facets[hit.facet];
@@ -107,7 +114,7 @@ class Gauge {
       const Vec3 a = points[t[(k + 1) % 3]] - hit.point;
       const Vec3 b = points[t[(k + 2) % 3]] - hit.point;
       const bool counts = a.cross(b).norm() > kInEdge * all;
-      if (counts && !ends_[t[k]]) {
+      if (counts && !ends_.slides(t[k])) {
         return false;
       }
       cut = cut || counts;
@@ -183,10 +190,10 @@ std::vector<Vec3> offset_directions(const Sheet& sheet,
   std::vector<Vec3> directions;
   directions.reserve(jets.size());
   for (int v = 0; v < static_cast<int>(jets.size()); ++v) {
-    const bool slides = !ends.empty() && ends[v];
+    const bool slides = ends.slides(v);
     if (slides && sheet.on_crease[v] == 0) {
       const Vec3& n = jets[v].normal;
-      directions.push_back(in_planes(*ends[v], n, n));
+      directions.push_back(in_planes(*ends.along[v], n, n));
       continue;
     }
     Mat3 matrix = Mat3::Zero();
@@ -199,9 +206,8 @@ std::vector<Vec3> offset_directions(const Sheet& sheet,
       right += weight * n;
     }
     if (sheet.on_crease[v] != 0) {
-      directions.push_back(
-          slides ? mitre(*ends[v] * matrix * *ends[v], *ends[v] * right)
-                 : mitre(matrix, right));
+      directions.push_back(slides ? mitre_in(*ends.along[v], matrix, right)
+                                  : mitre(matrix, right));
       continue;
     }
     const Vec3& n = jets[v].normal;
@@ -225,6 +231,9 @@ OffsetSides offset_sides(const Sheet& sheet, const std::vector<Vec3>& direction,
   for (int pass = 0; pass <= options.max_corrections; ++pass) {
     Points front = moved(sheet, direction, distance, part.front);
     Points back = moved(sheet, direction, distance, -part.back);
+    for (Points* side : {&front, &back}) {
+      make_room(sheet, ends, *side);
+    }
     gauge.measure(front, back);
     const bool slow = gauge.worst() > kSlow * best_error;
     if (gauge.worst() < best_error) {
@@ -237,7 +246,7 @@ OffsetSides offset_sides(const Sheet& sheet, const std::vector<Vec3>& direction,
     }
     for (std::size_t v = 0; v < distance.size(); ++v) {
       // On a crease the mitre is the answer: its tip is further away.
-      if (sheet.on_crease[v] == 0 && (ends.empty() || !ends[v])) {
+      if (sheet.on_crease[v] == 0 && !ends.slides(static_cast<int>(v))) {
         const double fix = std::clamp(1.0 / gauge.middle(static_cast<int>(v)),
                                       1.0 / kLargestFix, kLargestFix);
         distance[v] = std::clamp(distance[v] * fix, asked[v] / kTotalFix,

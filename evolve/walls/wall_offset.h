@@ -1,12 +1,12 @@
 /// How far and where a sheet's vertices go to become a wall's two sides.
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "evolve/walls/jet_fit.h"
 #include "evolve/walls/sheet.h"
 #include "evolve/walls/thicken.h"
+#include "evolve/walls/wall_ends.h"
 
 namespace meniscus::walls {
 
@@ -21,10 +21,6 @@ WallShares shares(WallSide side);
 /// eigenvalues above `spanned` times the largest, 0 across it: of planes
 /// n . d = h the point d where they meet.
 Mat3 mitre_inverse(const Mat3& matrix, double spanned = 0.05);
-
-/// Per vertex of a sheet that slides on planes the projector onto the
-/// directions which these leave (WallPlanes::along); empty: it slides nowhere.
-using SheetEnds = std::vector<std::optional<Mat3>>;
 
 /// Per vertex the move for an offset by 1: the solution of n_f . d = 1 over
 /// its facets, by corner angle in the least-squares sense; on a crease in the

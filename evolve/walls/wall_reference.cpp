@@ -11,7 +11,6 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "evolve/walls/wall_ends.h"
 #include "evolve/walls/wall_fillet.h"
 #include "evolve/walls/wall_offset.h"
 #include "evolve/walls/wall_sheets.h"
@@ -188,11 +187,10 @@ class Reference {
     const std::vector<Jet> jets = fit_jets(sheet);
     ThickenOptions options;
     options.side = side;
-    const SheetEnds ends = ends_of(sheet);
-    OffsetSides sides =
+    const SheetEnds ends = ends_of(sheet, jets, films_.planes);
+    const OffsetSides sides =
         offset_sides(sheet, offset_directions(sheet, jets, asked, ends), asked,
                      options, ends);
-    make_room(sheet, jets, ends, sides);
     std::vector<double> safe_at;
     SafeThickness safe = safe_thickness(
         sheet, jets, asked, side,
@@ -220,16 +218,6 @@ class Reference {
         set(facet.back[k], v, walls.at(v), asked[at], flipped ? front : back);
       }
     }
-  }
-
-  SheetEnds ends_of(const Sheet& sheet) const {
-    SheetEnds ends;
-    if (!films_.planes.at.empty()) {
-      for (const int v : sheet.origin) {
-        ends.push_back(films_.planes.along(v));
-      }
-    }
-    return ends;
   }
 
   void set(int point, int v, const std::set<int>& walls, double asked,
