@@ -331,6 +331,7 @@ films::FilmSystem films_of(const Case& input, const CaseValues& values) {
   if (!values.are_rates()) {
     refine_curves(input, system);
   }
+  make_cells(input, system);
   return system;
 }
 

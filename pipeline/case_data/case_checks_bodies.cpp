@@ -7,6 +7,7 @@
 
 #include "pipeline/case_data/case_checks.h"
 #include "pipeline/case_data/case_sides.h"
+#include "pipeline/case_data/case_wetted.h"
 
 namespace meniscus::case_data {
 
@@ -32,7 +33,8 @@ std::map<std::string, std::set<std::string>> surfaces_at_curves(
       films::CapSpec spec = cap.spec;
       spec.start = nullptr;  // a file's surfaces may end anywhere
       for (const std::string& curve : spec.curves()) {
-        at_curve[curve].insert(spec.name);
+        const bool one = cap.wetted && is_cell(input, curve);
+        at_curve[curve].insert(one ? "the solids wetted there" : spec.name);
       }
     }
   }
@@ -136,7 +138,7 @@ void check_caps(const Case& input, CaseProblems& problems) {
   };
   std::map<std::string, std::string> across;
   for (const CapEntry& cap : input.caps) {
-    if (!is_flat(cap)) {
+    if (!is_flat(cap) || (cap.wetted && is_cell(input, cap.spec.curve))) {
       continue;
     }
     const auto [first, is_new] = across.emplace(cap.spec.curve, cap.spec.name);
@@ -175,7 +177,8 @@ void check_wetted_curve(const Case& input, const CapEntry& cap,
     }
   }
   for (const CapEntry& other : input.caps) {
-    if (is_among(other.spec.curves(), curve) && &other != &cap) {
+    if (is_among(other.spec.curves(), curve) && &other != &cap &&
+        !(other.wetted && is_cell(input, curve))) {
       ends.push_back(other.spec.name);
     }
   }

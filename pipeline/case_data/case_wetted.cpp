@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "evolve/films/shared_sides.h"
 #include "evolve/start/wetted_faces.h"
 #include "pipeline/case_data/case_symmetry.h"
 
@@ -94,6 +95,39 @@ void check_on_wall(const Case& input, const CapEntry& cap,
 
 }  // namespace
 
+bool is_cell(const Case& input, const std::string& curve) {
+  return std::count_if(
+             input.caps.begin(), input.caps.end(), [&](const CapEntry& cap) {
+               return cap.wetted && cap.symmetry < 0 && cap.spec.curve == curve;
+             }) > 1;
+}
+
+void make_cells(const Case& input, films::FilmSystem& system) {
+  for (std::size_t k = 0; k < input.caps.size(); ++k) {
+    films::CapSpec& cap = system.caps[k];
+    if (!cap.wall || cap.curve.empty() || !is_cell(input, cap.curve)) {
+      continue;
+    }
+    for (curves::Curve& curve : system.curves) {
+      if (curve.name != cap.curve) {
+        continue;
+      }
+      curve.free = true;
+      double most = 0.0;  // off the plane, of its points
+      for (const Vec3& point : places_on(curve)) {
+        const double off = start::off_wall(*cap.wall, point);
+        most = std::abs(off) > std::abs(most) ? off : most;
+      }
+      if (most > 0.0) {
+        cap.wall->normal = -cap.wall->normal;
+      }
+    }
+    cap.wall->cuts = true;
+    cap.wall->tension = 0.0;
+    cap.curve.clear();
+  }
+}
+
 films::FilmWall wall_of(const Case& input, const CapEntry& cap,
                         const CaseValues& values) {
   const WettedWall& wetted = *cap.wetted;
@@ -143,8 +177,89 @@ films::FilmWall wall_of(const Case& input, const CapEntry& cap,
   return wall;
 }
 
+namespace {
+
+/// Sides of a cell's curve lie in planes, each of these on one side of it.
+void check_cell(const Case& input, const CurveEntry& entry,
+                const films::FilmSystem& system, const CaseValues& values) {
+  const auto tell = [&](SourceLine line, const std::string& what) {
+    values.problems().push_back(place(input, line) + ": " + what);
+  };
+  const auto curve = std::find_if(
+      system.curves.begin(), system.curves.end(),
+      [&](const curves::Curve& c) { return c.name == entry.name; });
+  if (curve == system.curves.end()) {
+    return;
+  }
+  const std::vector<films::CurveSide> sides = films::sides_of(curve->shape);
+  double size = 0.0;
+  for (const films::CurveSide& side : sides) {
+    size = std::max(size, (side.to - sides[0].from).norm());
+  }
+  std::vector<char> lies(sides.size(), 0);
+  for (std::size_t k = 0; k < input.caps.size(); ++k) {
+    const CapEntry& cap = input.caps[k];
+    const auto& wall = system.caps[k].wall;
+    if (!wall || cap.spec.curve != entry.name) {
+      continue;
+    }
+    if (wall->bent() || !cap.spec.more.empty() ||
+        std::abs(std::cos(values.dual(cap.wetted->contact_angle).value)) >
+            kSameEnergy) {
+      tell(cap.line,
+           fmt::format("solid '{}' is one of several that are wetted at curve "
+                       "'{}'; expected planes without holes, met at 90 deg",
+                       cap.spec.name, entry.name));
+      return;
+    }
+    const double reach = start::wall_reach(*wall, size);
+    bool has = false;
+    for (std::size_t s = 0; s < sides.size(); ++s) {
+      const double from = start::off_wall(*wall, sides[s].from);
+      const double to = start::off_wall(*wall, sides[s].to);
+      const bool in =
+          std::abs(from) <= reach && std::abs(to) <= reach &&
+          std::abs(start::off_wall(*wall, sides[s].middle)) <= reach;
+      lies[s] = in ? 1 : lies[s];
+      has = has || in;
+      if (std::max(from, to) > reach) {
+        tell(cap.line,
+             fmt::format("curve '{}' lies on both sides of the wall of '{}'; "
+                         "films lie within the planes on which they slide",
+                         entry.name, cap.spec.name));
+        return;
+      }
+    }
+    if (!has) {
+      tell(cap.line,
+           fmt::format("no side of curve '{}' lies in the plane of '{}'; "
+                       "expected one between two of its corners",
+                       entry.name, cap.spec.name));
+    }
+  }
+  const auto open = std::find(lies.begin(), lies.end(), 0);
+  if (sides.empty() || open != lies.end()) {
+    tell(entry.line,
+         sides.empty()
+             ? fmt::format("curve '{}' has no sides, of which one lies in the "
+                           "plane of each solid wetted there; expected a "
+                           "polygon or polyline",
+                           entry.name)
+             : fmt::format("side {} of curve '{}' lies in the plane of none of "
+                           "the solids that are wetted there; give it one",
+                           open - lies.begin() + 1, entry.name));
+  }
+}
+
+}  // namespace
+
 void check_on_walls(const Case& input, const films::FilmSystem& system,
                     const CaseValues& values) {
+  for (const CurveEntry& curve : input.curves) {
+    if (is_cell(input, curve.name)) {
+      check_cell(input, curve, system, values);
+    }
+  }
   for (std::size_t k = 0; k < input.caps.size(); ++k) {
     const films::CapSpec& spec = system.caps[k];
     for (const std::string& name : spec.curves()) {
