@@ -33,8 +33,7 @@ std::map<std::string, std::set<std::string>> surfaces_at_curves(
       films::CapSpec spec = cap.spec;
       spec.start = nullptr;  // a file's surfaces may end anywhere
       for (const std::string& curve : spec.curves()) {
-        const bool one = cap.wetted && is_cell(input, curve);
-        at_curve[curve].insert(one ? "the solids wetted there" : spec.name);
+        at_curve[curve].insert(spec.name);
       }
     }
   }
@@ -239,6 +238,9 @@ void check_closed(const Case& input, const BodyEntry& body,
   for (const auto& [curve, surfaces] : at_curve) {
     if (surfaces.size() == 1 && may_join_by_sides(input, curve)) {
       continue;  // other faces may have its sides: check_sides() knows
+    }
+    if (is_cell(input, curve)) {
+      continue;  // its walls end where they meet
     }
     if (surfaces.size() != 2) {
       problems.add(

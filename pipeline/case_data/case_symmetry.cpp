@@ -8,7 +8,9 @@
 
 #include <fmt/format.h>
 
+#include "evolve/films/shared_sides.h"
 #include "pipeline/case_data/case_checks.h"
+#include "pipeline/case_data/case_wetted.h"
 
 namespace meniscus::case_data {
 
@@ -245,11 +247,57 @@ void check_planes(const Case& input, CaseProblems& problems) {
   }
 }
 
+namespace {
+
+bool has_side_in(const SymmetryPlane& plane, const curves::Curve& curve) {
+  const Reach reach = reach_of(plane, curve);
+  const auto lies = [&](const Vec3& place) {
+    return std::abs(beyond(plane, place)) <= reach.rounding;
+  };
+  const std::vector<films::CurveSide> sides = films::sides_of(curve.shape);
+  return !reach.is_in_plane() &&
+         std::any_of(
+             sides.begin(), sides.end(), [&](const films::CurveSide& side) {
+               return lies(side.from) && lies(side.middle) && lies(side.to);
+             });
+}
+
+/// SymmetryPlane::curves.
+void find_sides_in_planes(Case& input,
+                          const std::vector<curves::Curve>& curves) {
+  for (SymmetryPlane& plane : input.symmetry) {
+    for (const curves::Curve& curve : curves) {
+      const bool of_film = std::any_of(
+          input.films.begin(), input.films.end(), [&](const FilmEntry& film) {
+            return names(film.spec.curves, curve.name);
+          });
+      if (of_film && has_side_in(plane, curve)) {
+        plane.curves.push_back(curve.name);
+      }
+    }
+  }
+}
+
+/// The curves that a plane cuts, or of whose cells it is a wall.
+std::set<std::string> ended_by(const Case& input, std::size_t plane,
+                               const std::vector<curves::Curve>& curves) {
+  std::set<std::string> result = cut_by(input.symmetry[plane], curves);
+  for (const std::string& curve : input.symmetry[plane].curves) {
+    if (is_cell(input, curve)) {
+      result.insert(curve);
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
 void add_cut_faces(Case& input, CaseProblems& problems) {
   if (input.symmetry.empty()) {
     return;
   }
   const std::vector<curves::Curve> curves = curves_at_start(input);
+  find_sides_in_planes(input, curves);
   for (std::size_t p = 0; p < input.symmetry.size(); ++p) {
     const int plane = static_cast<int>(p);
     std::set<std::string> in_plane;
@@ -268,7 +316,7 @@ void add_cut_faces(Case& input, CaseProblems& problems) {
       }
     }
     add_faces(input, plane, in_plane,
-              surfaces_at(input, cut_by(input.symmetry[p], curves)), problems);
+              surfaces_at(input, ended_by(input, p, curves)), problems);
   }
 }
 

@@ -96,35 +96,50 @@ void check_on_wall(const Case& input, const CapEntry& cap,
 }  // namespace
 
 bool is_cell(const Case& input, const std::string& curve) {
-  return std::count_if(
-             input.caps.begin(), input.caps.end(), [&](const CapEntry& cap) {
-               return cap.wetted && cap.symmetry < 0 && cap.spec.curve == curve;
-             }) > 1;
+  const auto walls =
+      std::count_if(input.caps.begin(), input.caps.end(),
+                    [&](const CapEntry& cap) {
+                      return cap.wetted && cap.symmetry < 0 &&
+                             cap.spec.curve == curve;
+                    }) +
+      std::count_if(input.symmetry.begin(), input.symmetry.end(),
+                    [&](const SymmetryPlane& plane) {
+                      return std::find(plane.curves.begin(), plane.curves.end(),
+                                       curve) != plane.curves.end();
+                    });
+  return walls > 1;
 }
 
+namespace {
+
+/// A plane that cuts, its normal away from the curve.
+void make_cell_wall(const curves::Curve& curve, films::CapSpec& cap) {
+  double most = 0.0;  // off the plane, of its points
+  for (const Vec3& point : places_on(curve)) {
+    const double off = start::off_wall(*cap.wall, point);
+    most = std::abs(off) > std::abs(most) ? off : most;
+  }
+  if (most > 0.0) {
+    cap.wall->normal = -cap.wall->normal;
+  }
+  cap.wall->cuts = true;
+  cap.wall->tension = 0.0;
+  cap.curve.clear();
+}
+
+}  // namespace
+
 void make_cells(const Case& input, films::FilmSystem& system) {
-  for (std::size_t k = 0; k < input.caps.size(); ++k) {
-    films::CapSpec& cap = system.caps[k];
-    if (!cap.wall || cap.curve.empty() || !is_cell(input, cap.curve)) {
+  for (curves::Curve& curve : system.curves) {
+    if (!is_cell(input, curve.name)) {
       continue;
     }
-    for (curves::Curve& curve : system.curves) {
-      if (curve.name != cap.curve) {
-        continue;
-      }
-      curve.free = true;
-      double most = 0.0;  // off the plane, of its points
-      for (const Vec3& point : places_on(curve)) {
-        const double off = start::off_wall(*cap.wall, point);
-        most = std::abs(off) > std::abs(most) ? off : most;
-      }
-      if (most > 0.0) {
-        cap.wall->normal = -cap.wall->normal;
+    curve.free = true;
+    for (films::CapSpec& cap : system.caps) {
+      if (cap.wall && cap.curve == curve.name) {
+        make_cell_wall(curve, cap);
       }
     }
-    cap.wall->cuts = true;
-    cap.wall->tension = 0.0;
-    cap.curve.clear();
   }
 }
 
@@ -200,14 +215,14 @@ void check_cell(const Case& input, const CurveEntry& entry,
   for (std::size_t k = 0; k < input.caps.size(); ++k) {
     const CapEntry& cap = input.caps[k];
     const auto& wall = system.caps[k].wall;
-    if (!wall || cap.spec.curve != entry.name) {
+    if (!wall || (cap.symmetry < 0 && cap.spec.curve != entry.name)) {
       continue;
     }
     if (wall->bent() || !cap.spec.more.empty() ||
         std::abs(std::cos(values.dual(cap.wetted->contact_angle).value)) >
             kSameEnergy) {
       tell(cap.line,
-           fmt::format("solid '{}' is one of several that are wetted at curve "
+           fmt::format("solid '{}' is one of the walls of a cell, at curve "
                        "'{}'; expected planes without holes, met at 90 deg",
                        cap.spec.name, entry.name));
       return;
@@ -230,7 +245,7 @@ void check_cell(const Case& input, const CurveEntry& entry,
         return;
       }
     }
-    if (!has) {
+    if (!has && cap.symmetry < 0) {
       tell(cap.line,
            fmt::format("no side of curve '{}' lies in the plane of '{}'; "
                        "expected one between two of its corners",

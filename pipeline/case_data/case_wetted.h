@@ -6,9 +6,9 @@
 
 namespace meniscus::case_data {
 
-/// A cell: the curve that two or more wetted faces name. Each side of it lies
-/// in the plane of one, where the film slides; a body's faces end where these
-/// planes meet.
+/// A cell: the curve that wetted faces name and planes of symmetry have sides
+/// of, two or more of them. Each side lies in one of their planes, where the
+/// film slides; a body's faces end where these planes meet.
 bool is_cell(const Case& input, const std::string& curve);
 
 /// The wall of a wetted face and -T cos(contact angle), its energy per area, or
