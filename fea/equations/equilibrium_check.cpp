@@ -12,8 +12,8 @@ namespace {
 
 /// Rounding of the largest terms of a row, with room for their sum.
 constexpr double kRounding = 1e-14;
-/// A free load so small beside all of it is rounding.
-constexpr double kHeldAlone = 1e-12;
+/// A free load so small beside all of it is what a solution left.
+constexpr double kHeldAlone = 1e-9;
 /// A residual's norm weighs short waves more than the energy norm does.
 constexpr double kShortWaves = 1e4;
 /// The sum of residuals is the work of the error on a rigid motion that the
@@ -76,7 +76,7 @@ Equilibrium check_equilibrium(const EquilibriumInput& input) {
   }
   // Relative to the free load; rounding as the diagonal lets u carry it. Loads
   // on what is held alone, as the dual ones of the strain energy where
-  // displacements are enforced, leave the rest their rounding.
+  // displacements are enforced, leave the rest what the solution left it.
   if (load > kHeldAlone * kHeldAlone * all) {
     result.residual = std::sqrt(error / load);
     result.rounding = kRounding * std::sqrt(rounding / load);
