@@ -263,27 +263,29 @@ class SlidingWalls(ProgramTest):
         self.assertAlmostEqual(found["responses"]["volume"] / area, 1,
                                delta=5e-3)
 
-    # A plane cuts films of a void along their axis.
+    # A plane cuts films of a void along their axis, and the floor on which they
+    # slide at an angle of their own.
     def test_a_half_and_a_quarter_are_the_whole(self):
-        upright = {**HELD, "angle": 1.3, "x": 0, "y": 0, "edge": 3, "wall": 2}
-        for top, share, load in ((HALF, 2, 100), (QUARTER, 4, 0)):
-            found = []
-            way = "[1, 0, 1]" if load else "[0, 0, 1]"
-            for parts in (1, share):
-                text = band(fill=3e4 / parts, top=top if parts > 1 else "",
-                            share=f"1 / {parts}", **upright)
-                text = text.replace("* 100", f"* {load}").replace(
-                    "bounds = [1e4, 6e4]", "bounds = [5e3, 6e4]").replace(
-                    "[1, 0, 1]", way)
-                found.append(self.run_at(text, f"of_{share}_{parts}"))
-            whole, part = found
-            self.assertEqual(part["symmetry"]["parts"], share)
-            self.assertAlmostEqual(part["responses"]["volume"] /
-                                   whole["responses"]["volume"], 1, delta=3e-3)
-            self.assertAlmostEqual(part["responses"]["sway"] /
-                                   whole["responses"]["sway"], 1, delta=0.02)
-            self.expect(self.call("check-gradient", self.folder /
-                                  f"of_{share}_{share}.toml"), 0)
+        for name, foot in (("held", HELD), ("floor", {})):
+            for top, share, load in ((HALF, 2, 100), (QUARTER, 4, 0)):
+                way = "[1, 0, 1]" if load else "[0, 0, 1]"
+                found = []
+                for parts in (1, share):
+                    text = band(fill=3e4 / parts, top=top if parts > 1 else "",
+                                share=f"1 / {parts}", angle=1.2, x=0, y=0,
+                                edge=3, wall=2, **foot)
+                    text = text.replace("* 100", f"* {load}").replace(
+                        "bounds = [1e4, 6e4]", "bounds = [5e3, 6e4]").replace(
+                        "[1, 0, 1]", way)
+                    found.append(self.run_at(text, f"{name}_{share}_{parts}"))
+                whole, part = found
+                self.assertEqual(part["symmetry"]["parts"], share)
+                for response, room in (("volume", 3e-3), ("sway", 0.02)):
+                    self.assertAlmostEqual(part["responses"][response] /
+                                           whole["responses"][response], 1,
+                                           delta=room, msg=response)
+                self.expect(self.call("check-gradient", self.folder /
+                                      f"{name}_{share}_{share}.toml"), 0)
 
     # It begins at a closed curve in the plane.
     def test_the_upper_half_is_the_whole(self):
@@ -384,9 +386,10 @@ kind = "strain_energy"
                            "wall of 'roof'")
         held = band(top=HALF.replace("at = [0, 0, 0], normal = [0, -1, 0]",
                                      "at = [0, 0, 20], normal = [0, 0, 1]"))
-        cut = band(top=HALF, x=0, y=0)
-        self.refused(cut, "a wetted solid at a curve that plane 1 of symmetry "
-                          "cuts")
+        slanting = band(top=HALF.replace("[0, -1, 0]", "[1, 0, 1]"), x=0, y=0)
+        self.refused(slanting, "a solid that is wetted on a bent or slanting "
+                               "wall, at a curve that plane 1 of symmetry cuts; "
+                               "expected a plane at right angles to it")
         self.refused(held, "walls.shell is of a film that solid 'roof' holds "
                            "in plane 1")
         self.refused(ball().replace("[0, 0, 10]]", "[1, 0, 10]]"),
