@@ -446,6 +446,12 @@ Vec3 middle_of(const films::FilmComplex& complex,
   if (meets.empty()) {
     return Vec3::Zero();
   }
+  const FacePlane own = plane_of(complex, face);
+  if (std::any_of(meets.begin(), meets.end(), [&](const FacePlane& plane) {
+        return std::abs(plane.normal.dot(own.normal)) > kInPlane;
+      })) {
+    meets.push_back(own);  // else across it, where it makes no difference
+  }
   Eigen::MatrixX3d normals(static_cast<Eigen::Index>(meets.size()), 3);
   VectorX offs(normals.rows());
   Eigen::Index row = 0;

@@ -51,18 +51,24 @@ SheetEnds ends_of(const Sheet& sheet, const std::vector<Jet>& jets,
 void make_room(const Sheet& sheet, const SheetEnds& ends, Points& side) {
   const std::vector<Shift> shifts = find_shifts(sheet, ends, side);
   const Points& x = sheet.film.points;
+  auto own = shifts.begin();
   for (int v = 0; v < static_cast<int>(ends.along.size()); ++v) {
-    if (ends.slides(v) || shifts.empty()) {
+    if (own != shifts.end() && own->vertex == v) {
+      ++own;
       continue;
     }
     const auto away = [&](const Shift& shift) {
       return (x[v] - x[shift.vertex]).norm() / shift.reach;
     };
-    const Shift& nearest = *std::min_element(
+    const auto nearest = std::min_element(
         shifts.begin(), shifts.end(),
         [&](const Shift& a, const Shift& b) { return away(a) < away(b); });
-    side[v] += std::max(0.0, 1.0 - away(nearest)) *
-               across(ends.normals[v], nearest.by);
+    if (nearest == shifts.end()) {
+      return;
+    }
+    const Vec3 by = std::max(0.0, 1.0 - away(*nearest)) *
+                    across(ends.normals[v], nearest->by);
+    side[v] += ends.slides(v) ? Vec3(*ends.along[v] * by) : by;
   }
 }
 
