@@ -26,7 +26,7 @@ struct FacePlane {
   Vec3 at = Vec3::Zero();       // [length]
   Vec3 normal = Vec3::UnitZ();  // unit; of faces as their facets, of planes
                                 // that cut away from what is left
-  int set = -1;  // its constraint set; -1: a solid's own face
+  int set = -1;                 // its constraint set; -1: a solid's own face
 };
 
 /// Adds facets to a surface: `ids` are the vertices of the filling's first
