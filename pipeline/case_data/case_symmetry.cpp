@@ -503,8 +503,9 @@ void apply_symmetry(Case& input, CaseProblems& problems) {
   const std::vector<std::string> faces = held_faces(input);
   if (faces.empty()) {
     problems.add(line,
-                 "no body ends in a plane of symmetry: let it cut curves, let "
-                 "films end at a closed curve in it, or give it a solid that "
+                 "no body or wall ends in a plane of symmetry: let it cut "
+                 "curves, let films end at a closed curve in it, or at a "
+                 "polygon whose sides lie in planes, or give it a solid that "
                  "lies in it");
   }
   for (LoadCaseEntry& load_case : input.load_cases) {
