@@ -163,7 +163,8 @@ class Builder {
         curve = std::to_string(
             unnamed.try_emplace(rim.group, number).first->second);
       }
-      rim_label_.push_back(label_named(film + "/rim:" + curve));
+      rim_label_.push_back(
+          label_named(std::string(film).append("/rim:").append(curve)));
     }
   }
 
