@@ -15,6 +15,7 @@
 #include "pipeline/case_data/case_loads.h"
 #include "pipeline/case_data/case_sides.h"
 #include "pipeline/case_data/case_symmetry.h"
+#include "pipeline/case_data/case_wetted.h"
 #include "pipeline/case_data/design_vectors.h"
 
 namespace meniscus::case_data {
@@ -731,14 +732,6 @@ bool share(const std::vector<std::string>& a,
   return std::any_of(a.begin(), a.end(), [&](const std::string& name) {
     return std::find(b.begin(), b.end(), name) != b.end();
   });
-}
-
-/// A film begins there and slides, on a wetted face or a plane of symmetry.
-bool slides_at(const Case& input, const std::string& curve) {
-  return std::any_of(input.caps.begin(), input.caps.end(),
-                     [&](const CapEntry& cap) {
-                       return cap.wetted && share(cap.spec.curves(), {curve});
-                     });
 }
 
 }  // namespace

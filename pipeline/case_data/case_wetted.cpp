@@ -110,6 +110,16 @@ bool is_cell(const Case& input, const std::string& curve) {
   return walls > 1;
 }
 
+bool slides_at(const Case& input, const std::string& curve) {
+  return is_cell(input, curve) ||
+         std::any_of(
+             input.caps.begin(), input.caps.end(), [&](const CapEntry& cap) {
+               const std::vector<std::string> curves = cap.spec.curves();
+               return cap.wetted && std::find(curves.begin(), curves.end(),
+                                              curve) != curves.end();
+             });
+}
+
 namespace {
 
 /// A plane that cuts, its normal away from the curve.

@@ -11,6 +11,10 @@ namespace meniscus::case_data {
 /// film slides; a body's faces end where these planes meet.
 bool is_cell(const Case& input, const std::string& curve);
 
+/// Does a film begin at the curve and slide, on a wetted face, in a plane of
+/// symmetry or in a cell?
+bool slides_at(const Case& input, const std::string& curve);
+
 /// The wall of a wetted face and -T cos(contact angle), its energy per area, or
 /// the rate of that; what is wrong with them is told.
 films::FilmWall wall_of(const Case& input, const CapEntry& cap,
