@@ -386,6 +386,15 @@ kind = "strain_energy"
                            "wall of 'roof'")
         held = band(top=HALF.replace("at = [0, 0, 0], normal = [0, -1, 0]",
                                      "at = [0, 0, 20], normal = [0, 0, 1]"))
+        rims = band().replace('thickness = "wall"', 'thickness = "along"')
+        rims = rims.replace("[walls.shell]", """[shapes.along]
+kind = "rims"
+curves = ["low", "high"]
+coefficients = "wall"
+
+[walls.shell]""").replace("[design.wall]", "[design.wall]\nshape = [3]")
+        self.refused(rims, "the film only begins at 'low' and slides: take "
+                           "curves that hold it")
         slanting = band(top=HALF.replace("[0, -1, 0]", "[1, 0, 1]"), x=0, y=0)
         self.refused(slanting, "a solid that is wetted on a bent or slanting "
                                "wall, at a curve that plane 1 of symmetry cuts; "
