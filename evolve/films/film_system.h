@@ -63,6 +63,8 @@ struct FilmWall {
   WallKind kind = WallKind::Plane;
   double radius = 0.0;      // of cylinder and sphere, above 0 [length]
   double half_angle = 0.0;  // of a cone, above 0 and below pi / 2
+  /// What the ends of films made solid are called on it: "FILM/" and this.
+  std::string rim;
 
   /// None of a plane.
   std::optional<BentWall> bent() const {

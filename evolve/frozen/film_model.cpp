@@ -697,6 +697,45 @@ std::vector<double> FilmModel::rim_parameters(const std::string& curve) const {
   return result;
 }
 
+SlidingPlanes FilmModel::sliding_planes() const {
+  const films::FilmComplex& complex = impl_->complex;
+  SlidingPlanes result;
+  result.at.resize(complex.vertices.size());
+  std::vector<int> plane_of(complex.level_sets.size(), -1);
+  for (const films::ComplexSurface& surface : complex.surfaces) {
+    if (!surface.wetted || surface.wetted->bent || surface.constraints < 0) {
+      continue;
+    }
+    const int level = complex.constraint_sets[surface.constraints].front();
+    if (plane_of[level] < 0) {
+      plane_of[level] = static_cast<int>(result.planes.size());
+      result.planes.push_back(
+          {complex.level_sets[level].name, surface.wetted->normal});
+    }
+  }
+  const auto stays = [&](int v, int set) {
+    for (const int level : complex.constraint_sets[set]) {
+      std::vector<int>& at = result.at[v];
+      if (plane_of[level] >= 0 &&
+          std::find(at.begin(), at.end(), plane_of[level]) == at.end()) {
+        at.push_back(plane_of[level]);
+      }
+    }
+  };
+  for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
+    if (complex.vertices[v].constraints >= 0) {
+      stays(static_cast<int>(v), complex.vertices[v].constraints);
+    }
+  }
+  for (const films::ComplexEdge& mark : complex.edges) {
+    if (mark.constraints >= 0) {
+      stays(mark.a, mark.constraints);
+      stays(mark.b, mark.constraints);
+    }
+  }
+  return result;
+}
+
 films::FilmComplex FilmModel::Impl::at_design(
     films::FilmComplex at, const settle::FilmState& state,
     const films::FilmSystem& system) const {

@@ -41,6 +41,17 @@ struct FilmModelOptions {
   Monitor* monitor = nullptr;
 };
 
+/// Planes on which films slide.
+struct SlidingPlanes {
+  struct Plane {
+    std::string face;  // the cap that it was made for, the first of several
+    Vec3 normal = Vec3::UnitZ();  // unit, either way
+  };
+  std::vector<Plane> planes;
+  std::vector<std::vector<int>> at;  // per vertex: of `planes`, those that it
+                                     // stays in
+};
+
 class FilmModel {
  public:
   /// Freezes a model at `initial`. Throws InvalidInput for a system that
@@ -173,6 +184,9 @@ class FilmModel {
   std::vector<int> rim(const std::string& curve) const;
   /// Their parameters t on it, in the same order.
   std::vector<double> rim_parameters(const std::string& curve) const;
+
+  /// Of the fine mesh, the ends of curves that a plane cuts included.
+  SlidingPlanes sliding_planes() const;
 
   FilmModel(FilmModel&&) noexcept;
   FilmModel& operator=(FilmModel&&) noexcept;

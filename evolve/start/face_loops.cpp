@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include <Eigen/Geometry>
@@ -141,24 +142,7 @@ FaceSeams::FaceSeams(films::FilmComplex& complex, std::vector<FacePlane> planes,
 std::vector<std::vector<int>> FaceSeams::loops(const FacePlane& face,
                                                std::map<int, int> next,
                                                const std::string& name) {
-  std::set<int> reached;
-  for (const auto& [from, to] : next) {
-    reached.insert(to);
-  }
-  std::vector<End> ends;
-  for (const auto& [from, to] : next) {
-    if (reached.count(from) == 0) {
-      ends.push_back({from, true});
-    }
-  }
-  for (const int to : reached) {
-    if (next.count(to) == 0) {
-      ends.push_back({to, false});
-    }
-  }
-  if (!ends.empty()) {
-    close(face, ends, next);
-  }
+  close(face, next);
   std::vector<std::vector<int>> loops;
   while (!next.empty()) {
     std::vector<int>& loop = loops.emplace_back();
@@ -174,68 +158,98 @@ std::vector<std::vector<int>> FaceSeams::loops(const FacePlane& face,
       const Vec3& p = complex_.mesh.points[last];
       throw InvalidInput(fmt::format(
           "the boundary of '{}' ends at ({:.6g}, {:.6g}, {:.6g}), on no plane "
-          "of symmetry that could close it",
+          "that could close it",
           name, p.x(), p.y(), p.z()));
     }
   }
   return loops;
 }
 
-/// Along each plane the ends are joined in pairs, as a line runs in and out of
-/// a face; where one is left over, seams of two planes meet in a corner.
-void FaceSeams::close(const FacePlane& face, const std::vector<End>& ends,
-                      std::map<int, int>& next) {
-  struct Seam {
-    std::size_t plane;
-    Vec3 along;
-    std::vector<std::pair<double, End>> on;  // by the way along
-  };
-  std::vector<Seam> seams;
-  std::vector<std::size_t> odd;
-  for (std::size_t p = 0; p < planes_.size(); ++p) {
-    const FacePlane& plane = planes_[p];
-    Seam seam{p, face.normal.cross(plane.normal), {}};
-    if (plane.set == face.set || seam.along.norm() < kParallel) {
-      continue;  // its own, or that of a solid's face that lies in it
-    }
-    for (const End& end : ends) {
-      const Vec3& at = complex_.mesh.points[end.vertex];
-      if (std::abs(plane.normal.dot(at - plane.at)) <= reach_) {
-        seam.on.emplace_back(seam.along.dot(at), end);
-      }
-    }
-    std::sort(seam.on.begin(), seam.on.end(),
-              [](const auto& a, const auto& b) { return a.first < b.first; });
-    if (seam.on.size() % 2 == 1) {
-      odd.push_back(seams.size());
-    }
-    seams.push_back(std::move(seam));
+void FaceSeams::close(const FacePlane& face, std::map<int, int>& next) {
+  std::set<int> reached;
+  std::set<int> beginnings;
+  for (const auto& [from, to] : next) {
+    reached.insert(to);
   }
-  if (odd.size() == 2) {
-    const int middle = corner(face, seams[odd[0]].plane, seams[odd[1]].plane);
-    for (const std::size_t s : odd) {
-      Seam& seam = seams[s];
-      const double there = seam.along.dot(complex_.mesh.points[middle]);
-      const auto nearest = std::min_element(
-          seam.on.begin(), seam.on.end(), [&](const auto& a, const auto& b) {
-            return std::abs(a.first - there) < std::abs(b.first - there);
-          });
-      const End end = nearest->second;
-      seam.on.erase(nearest);
-      join(face, seam.plane, end, {middle, !end.starts}, next);
+  for (const auto& [from, to] : next) {
+    if (reached.count(from) == 0) {
+      beginnings.insert(from);
     }
   }
-  for (const Seam& seam : seams) {
-    for (std::size_t k = 0; k + 1 < seam.on.size(); k += 2) {
-      join(face, seam.plane, seam.on[k].second, seam.on[k + 1].second, next);
+  const std::map<int, int> given = next;
+  for (const int end : reached) {
+    if (given.count(end) == 0) {
+      walk(face, end, beginnings, next);
     }
   }
 }
 
-void FaceSeams::join(const FacePlane& face, std::size_t plane, const End& a,
-                     const End& b, std::map<int, int>& next) {
-  const int from = a.starts ? b.vertex : a.vertex;
-  const int to = a.starts ? a.vertex : b.vertex;
+void FaceSeams::walk(const FacePlane& face, int vertex,
+                     std::set<int>& beginnings, std::map<int, int>& next) {
+  int plane = plane_at(face, vertex);
+  for (std::size_t seams = 0; plane >= 0 && seams <= planes_.size(); ++seams) {
+    const Vec3 from = complex_.mesh.points[vertex];
+    const Vec3 way = face.normal.cross(planes_[plane].normal).normalized();
+    double far = std::numeric_limits<double>::infinity();
+    const int beyond = next_plane(face, plane, from, way, far);
+    int to = -1;
+    for (const int beginning : beginnings) {
+      const Vec3& at = complex_.mesh.points[beginning];
+      const double there = way.dot(at - from);
+      if (std::abs(planes_[plane].normal.dot(at - planes_[plane].at)) <=
+              reach_ &&
+          there > 0.0 && there <= far + reach_) {
+        far = there;
+        to = beginning;
+      }
+    }
+    if (to >= 0) {
+      join(face, plane, vertex, to, next);
+      beginnings.erase(to);
+      return;
+    }
+    if (beyond >= 0) {
+      const int turn = corner(face, plane, beyond);
+      join(face, plane, vertex, turn, next);
+      vertex = turn;
+    }
+    plane = beyond;
+  }
+}
+
+/// The plane beside the face's own that a vertex lies on; -1: none.
+int FaceSeams::plane_at(const FacePlane& face, int vertex) const {
+  const Vec3& at = complex_.mesh.points[vertex];
+  for (std::size_t p = 0; p < planes_.size(); ++p) {
+    const FacePlane& plane = planes_[p];
+    if (plane.set != face.set &&
+        face.normal.cross(plane.normal).norm() > kParallel &&
+        std::abs(plane.normal.dot(at - plane.at)) <= reach_) {
+      return static_cast<int>(p);
+    }
+  }
+  return -1;
+}
+
+/// The plane that cuts off the face's edge in `plane` first, on the `way` from
+/// a place, and how `far` that is; -1: none does.
+int FaceSeams::next_plane(const FacePlane& face, int plane, const Vec3& from,
+                          const Vec3& way, double& far) const {
+  int first = -1;
+  for (std::size_t q = 0; q < planes_.size(); ++q) {
+    const double toward = planes_[q].normal.dot(way);
+    const double there = planes_[q].normal.dot(planes_[q].at - from) / toward;
+    if (static_cast<int>(q) != plane && planes_[q].set != face.set &&
+        toward > kParallel && there > reach_ && there < far) {
+      first = static_cast<int>(q);
+      far = there;
+    }
+  }
+  return first;
+}
+
+void FaceSeams::join(const FacePlane& face, int plane, int from, int to,
+                     std::map<int, int>& next) {
   std::vector<int> line =
       seam(from, to, joined_set(complex_, face.set, planes_[plane].set));
   if (line.front() != from) {
@@ -272,7 +286,7 @@ const std::vector<int>& FaceSeams::seam(int from, int to, int set) {
   return line;
 }
 
-int FaceSeams::corner(const FacePlane& face, std::size_t p, std::size_t q) {
+int FaceSeams::corner(const FacePlane& face, int p, int q) {
   const int set = joined_set(
       complex_, face.set, joined_set(complex_, planes_[p].set, planes_[q].set));
   if (face.set >= 0) {

@@ -1,6 +1,7 @@
-/// Internal to start: the loops around plane faces that planes of symmetry cut.
-/// Open ends of a face's boundary lie on these planes; straight seams between
-/// them close it, which faces on both sides of a seam have in common.
+/// Internal to start: the loops around plane faces that planes cut, those of
+/// symmetry or of a cell. Open ends of a face's boundary lie on these planes;
+/// straight seams between them close it, which faces on both sides of a seam
+/// have in common.
 #pragma once
 
 #include <map>
@@ -23,7 +24,8 @@ int joined_set(films::FilmComplex& complex, int a, int b);
 
 struct FacePlane {
   Vec3 at = Vec3::Zero();       // [length]
-  Vec3 normal = Vec3::UnitZ();  // of unit length; of faces as their facets
+  Vec3 normal = Vec3::UnitZ();  // unit; of faces as their facets, of planes
+                                // that cut away from what is left
   int set = -1;                 // its constraint set; -1: a solid's own face
 };
 
@@ -52,24 +54,27 @@ class FaceSeams {
             double edge);
 
   /// The closed loops of a face whose boundary runs from vertices to the
-  /// `next`; chains of it that are open end on `planes`. New seams have marked
+  /// `next`; chains of it that are open end on `planes`. From the end of a
+  /// chain a seam runs along its plane, the face to its left, to where a chain
+  /// begins or the next plane cuts it off, and so on. New seams have marked
   /// edges, and vertices that stay on both planes. Throws InvalidInput, naming
-  /// `face`, for an end that lies on no plane.
+  /// `face`, for an end from which no seam leads to a beginning.
   std::vector<std::vector<int>> loops(const FacePlane& face,
                                       std::map<int, int> next,
                                       const std::string& name);
 
  private:
-  struct End {
-    int vertex;
-    bool starts;  // a chain begins here: a seam must lead to it
-  };
-  void close(const FacePlane& face, const std::vector<End>& ends,
-             std::map<int, int>& next);
-  void join(const FacePlane& face, std::size_t plane, const End& a,
-            const End& b, std::map<int, int>& next);
+  void close(const FacePlane& face, std::map<int, int>& next);
+  /// From `vertex`, where a chain ends, to the beginning of one.
+  void walk(const FacePlane& face, int vertex, std::set<int>& beginnings,
+            std::map<int, int>& next);
+  int plane_at(const FacePlane& face, int vertex) const;
+  int next_plane(const FacePlane& face, int plane, const Vec3& from,
+                 const Vec3& way, double& far) const;
+  void join(const FacePlane& face, int plane, int from, int to,
+            std::map<int, int>& next);
   const std::vector<int>& seam(int from, int to, int set);
-  int corner(const FacePlane& face, std::size_t p, std::size_t q);
+  int corner(const FacePlane& face, int p, int q);
   int add_vertex(const Vec3& place, int set);
 
   films::FilmComplex& complex_;

@@ -27,6 +27,7 @@
 #include "evolve/start/close_rims.h"
 #include "evolve/start/cut_start.h"
 #include "evolve/start/disk_fill.h"
+#include "evolve/start/face_loops.h"
 #include "evolve/start/facet_start.h"
 #include "evolve/start/fill_patch.h"
 #include "evolve/start/raise_disks.h"
@@ -584,6 +585,7 @@ class StartBuilder {
       }
     }
     std::vector<std::vector<int>> faces;
+    std::vector<std::vector<films::BodySide>> in_cells;  // per body: its films
     for (films::BodySpec body : system_.bodies) {
       std::vector<int>& of_body = faces.emplace_back();
       std::erase_if(body.enclosed_by, [&](const std::string& name) {
@@ -594,19 +596,60 @@ class StartBuilder {
         return at != later.end();
       });
       result_.bodies.push_back(films::make_body(body, result_.mesh));
+      auto& films = in_cells.emplace_back();
+      if (is_in_cell(body)) {
+        films.swap(result_.bodies.back().sides);
+      }
     }
     for (const films::CapSpec& cap : system_.caps) {
-      films::require_body(system_, cap.name);
+      if (!cap.wall || !cap.wall->cuts) {  // films may slide on a plane alone
+        films::require_body(system_, cap.name);
+      }
     }
     films::orient_bodies(result_);
     if (turn_shared_disks(raised, result_)) {
       films::orient_bodies(result_);
     }
+    std::set<int> behind;  // films that have a body behind them
     for (std::size_t b = 0; b < faces.size(); ++b) {
+      for (films::BodySide side : in_cells[b]) {
+        side.sign = behind.insert(side.surface).second ? 1 : -1;
+        result_.bodies[b].sides.push_back(side);
+      }
       for (const int label : faces[b]) {
         result_.bodies[b].sides.push_back({label, 1});
       }
     }
+  }
+
+  /// Do its films end on planes that cut, all around? Nothing closes such a
+  /// body before these do: it lies behind the first of its films, which run as
+  /// their curves do, and another before them.
+  bool is_in_cell(const films::BodySpec& body) const {
+    const double reach = reach_of_planes(result_.mesh.points);
+    const auto lies = [&](int v) {
+      return std::any_of(
+          system_.caps.begin(), system_.caps.end(),
+          [&](const films::CapSpec& cap) {
+            return cap.wall && cap.wall->cuts &&
+                   std::abs(off_wall(*cap.wall, result_.mesh.points[v])) <=
+                       reach;
+          });
+    };
+    return std::all_of(
+        body.enclosed_by.begin(), body.enclosed_by.end(),
+        [&](const std::string& name) {
+          const auto film = std::find_if(
+              system_.films.begin(), system_.films.end(),
+              [&](const films::FilmSpec& f) { return f.name == name; });
+          return film != system_.films.end() &&
+                 std::all_of(film->curves.begin(), film->curves.end(),
+                             [&](const std::string& curve) {
+                               const std::vector<int>& rim =
+                                   rims_.at(curve).ids;
+                               return std::all_of(rim.begin(), rim.end(), lies);
+                             });
+        });
   }
 
   void add_walls() {

@@ -389,37 +389,102 @@ std::vector<Points> places_of(const std::vector<std::vector<int>>& loops,
   return result;
 }
 
-/// Where line integrals begin: on the planes of all faces that meet this one
-/// along a seam, which then add nothing to them.
-Vec3 middle_of(const films::FilmComplex& complex,
-               const films::ComplexSurface& face) {
-  const int own = complex.constraint_sets[face.constraints].front();
-  std::set<int> others;
-  for (const std::vector<int>& set : complex.constraint_sets) {
-    if (std::find(set.begin(), set.end(), own) != set.end()) {
-      others.insert(set.begin(), set.end());
+/// Planes that wetted faces lie in, each once.
+std::vector<FacePlane> planes_of_faces(const films::FilmComplex& complex) {
+  std::vector<FacePlane> planes;
+  for (const films::ComplexSurface& face : complex.surfaces) {
+    if (face.wetted && !face.wetted->bent &&
+        std::none_of(planes.begin(), planes.end(), [&](const FacePlane& p) {
+          return p.set == face.constraints;
+        })) {
+      planes.push_back(plane_of(complex, face));
     }
   }
-  others.erase(own);
-  if (others.empty()) {
+  return planes;
+}
+
+/// The ends of a face's boundary where it is open.
+Points open_ends(const films::FilmComplex& complex, int surface) {
+  const std::map<int, int> next = boundary_of(complex, surface);
+  std::set<int> reached;
+  Points ends;
+  for (const auto& [from, to] : next) {
+    reached.insert(to);
+    if (next.count(to) == 0) {
+      ends.push_back(complex.mesh.points[to]);
+    }
+  }
+  for (const auto& [from, to] : next) {
+    if (reached.count(from) == 0) {
+      ends.push_back(complex.mesh.points[from]);
+    }
+  }
+  return ends;
+}
+
+/// Where line integrals along the faces in one plane begin: on the planes on
+/// which their boundaries have open ends. The seams in these then add nothing,
+/// and others do not move.
+Vec3 middle_of(const films::FilmComplex& complex,
+               const films::ComplexSurface& face) {
+  Points ends;
+  for (std::size_t s = 0; s < complex.surfaces.size(); ++s) {
+    const films::ComplexSurface& other = complex.surfaces[s];
+    if (other.wetted && other.constraints == face.constraints) {
+      const Points more = open_ends(complex, static_cast<int>(s));
+      ends.insert(ends.end(), more.begin(), more.end());
+    }
+  }
+  const double reach = reach_of_planes(complex.mesh.points);
+  std::vector<FacePlane> meets = planes_of_faces(complex);
+  std::erase_if(meets, [&](const FacePlane& plane) {
+    return plane.set == face.constraints ||
+           std::none_of(ends.begin(), ends.end(), [&](const Vec3& end) {
+             return std::abs(plane.normal.dot(end - plane.at)) <= reach;
+           });
+  });
+  if (meets.empty()) {
     return Vec3::Zero();
   }
-  Eigen::MatrixX3d normals(static_cast<Eigen::Index>(others.size()), 3);
+  const FacePlane own = plane_of(complex, face);
+  if (std::any_of(meets.begin(), meets.end(), [&](const FacePlane& plane) {
+        return std::abs(plane.normal.dot(own.normal)) > kInPlane;
+      })) {
+    meets.push_back(own);  // else across it, where it makes no difference
+  }
+  Eigen::MatrixX3d normals(static_cast<Eigen::Index>(meets.size()), 3);
   VectorX offs(normals.rows());
   Eigen::Index row = 0;
-  for (const int level : others) {
-    const Expression& formula = complex.level_sets[level].formula;
-    normals.row(row) = jet_at(formula, Vec3::Zero()).gradient;
-    offs[row++] = -value_at(formula, Vec3::Zero());
+  for (const FacePlane& plane : meets) {
+    normals.row(row) = plane.normal.transpose();
+    offs[row++] = plane.normal.dot(plane.at);
   }
   const Vec3 middle = least_norm(normals, offs);
   const double off = (normals * middle - offs).cwiseAbs().maxCoeff();
   if (!(off <= kInPlane * (1.0 + offs.cwiseAbs().maxCoeff()))) {
     throw InvalidInput(fmt::format(
-        "'{}' meets walls that have no point in common; draw the whole",
+        "'{}' ends on planes that have no point in common; let its film end on "
+        "planes that meet",
         face.name));
   }
   return middle;
+}
+
+/// What the line integrals of a face leave out of its body's volume: cones over
+/// the parts beside seams that do not move.
+double beside_lines(const films::FilmComplex& complex, int surface,
+                    const Vec3& from) {
+  const Vec3& n = complex.surfaces[surface].wetted->normal;
+  double along = 0.0;  // twice the area
+  double off = 0.0;
+  for (const auto& [a, b] : boundary_of(complex, surface)) {
+    const Vec3& p = complex.mesh.points[a];
+    along += n.dot((p - from).cross(complex.mesh.points[b] - p));
+    off = n.dot(p);
+  }
+  const double area = n.dot(area_vector(complex.mesh, surface));
+  const double rest = area - 0.5 * along;
+  return std::abs(rest) > kInPlane * std::abs(area) ? off / 3.0 * rest : 0.0;
 }
 
 /// Triangles on the bent wall between loops, in their direction.
@@ -493,7 +558,11 @@ void slide_on_wall(const films::FilmSystem& system, const films::CapSpec& cap,
     require_one_film(system, cap, curves[k]);
     require_on_wall(cap, curves[k], rims[k], complex.mesh.points);
   }
-  if (area_vector(complex.mesh, label).dot(n) < 0.0) {
+  const bool of_body = std::any_of(system.bodies.begin(), system.bodies.end(),
+                                   [&](const films::BodySpec& body) {
+                                     return body.is_enclosed_by(cap.name);
+                                   });
+  if (of_body && area_vector(complex.mesh, label).dot(n) < 0.0) {
     n = -n;
   }
   const auto bent = wall_beside(cap, places_of(rims, complex.mesh.points));
@@ -571,7 +640,9 @@ films::FilmComplex open_wetted_faces(const films::FilmComplex& complex) {
   drop_unused(result);
   // The face's area A is half the integral of m x r along its rim, its cone
   // (m . r) A / 3. Films run along the rim the other way.
-  for (const films::ComplexSurface& face : complex.surfaces) {
+  for (std::size_t k = 0; k < complex.surfaces.size(); ++k) {
+    const films::ComplexSurface& face = complex.surfaces[k];
+    const auto surface = static_cast<int>(k);
     if (!face.wetted) {
       continue;
     }
@@ -598,6 +669,14 @@ films::FilmComplex open_wetted_faces(const films::FilmComplex& complex) {
     } else {
       const Vec3 from = middle_of(complex, face);
       const Vec3& n = face.wetted->normal;
+      for (films::ComplexBody& body : result.bodies) {
+        for (const films::BodySide& side : body.sides) {
+          if (side.surface == surface) {
+            body.volume_offset +=
+                side.sign * beside_lines(complex, surface, from);
+          }
+        }
+      }
       fields = {area_field(n, from, 0.5 * face.tension),
                 area_field(n, from, -off / 6.0)};
     }
@@ -613,16 +692,7 @@ films::FilmComplex open_wetted_faces(const films::FilmComplex& complex) {
 }
 
 void close_wetted_faces(films::FilmComplex& complex, double edge) {
-  std::vector<FacePlane> planes;
-  for (const films::ComplexSurface& face : complex.surfaces) {
-    if (face.wetted && !face.wetted->bent &&
-        std::none_of(planes.begin(), planes.end(), [&](const FacePlane& p) {
-          return p.set == face.constraints;
-        })) {
-      planes.push_back(plane_of(complex, face));
-    }
-  }
-  FaceSeams seams(complex, planes, edge);
+  FaceSeams seams(complex, planes_of_faces(complex), edge);
   for (std::size_t s = 0; s < complex.surfaces.size(); ++s) {
     const films::ComplexSurface& face = complex.surfaces[s];
     const auto label = static_cast<int>(s);
@@ -640,6 +710,9 @@ void close_wetted_faces(films::FilmComplex& complex, double edge) {
   }
   complex.integrals.clear();
   complex.integral_sets.clear();
+  for (films::ComplexBody& body : complex.bodies) {
+    body.volume_offset = 0.0;
+  }
 }
 
 }  // namespace meniscus::start

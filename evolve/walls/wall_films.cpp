@@ -73,6 +73,24 @@ Vec3 middle_of_rim(const films::FilmSystem& system, const std::string& film,
   return sum / std::max(count, 1);
 }
 
+WallPlanes planes_of(const frozen::FilmModel& model,
+                     const films::FilmSystem& system) {
+  frozen::SlidingPlanes sliding = model.sliding_planes();
+  WallPlanes result;
+  for (const frozen::SlidingPlanes::Plane& plane : sliding.planes) {
+    const auto cap = std::find_if(
+        system.caps.begin(), system.caps.end(),
+        [&](const films::CapSpec& c) { return c.name == plane.face; });
+    result.planes.push_back(
+        {plane.normal,
+         cap == system.caps.end() || !cap->wall ? plane.face : cap->wall->rim});
+  }
+  if (!result.planes.empty()) {
+    result.at = std::move(sliding.at);
+  }
+  return result;
+}
+
 /// Per wall that at the first of its points.
 std::vector<double> usual_thicknesses(const WallFilms& films,
                                       const std::vector<WallSpec>& walls) {
@@ -124,6 +142,7 @@ WallFilms wall_films(const frozen::FilmModel& model,
     films.rims.push_back(
         {curve.name, model.rim(curve.name), model.rim_parameters(curve.name)});
   }
+  films.planes = planes_of(model, system);
   films.asked =
       usual_thicknesses(films, on_films(walls, mesh, films.wall, films.rims));
   return films;

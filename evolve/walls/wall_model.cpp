@@ -51,6 +51,7 @@ WallModel::WallModel(const WallFilms& films, std::vector<WallSpec> walls,
                      SafePlaces places)
     : given_(std::move(walls)),
       reference_film_(films.mesh.points),
+      planes_(films.planes),
       topology_(wall_topology(films)),
       specs_(on_finest(given_, topology_, films)),
       reference_(wall_reference(topology_, films, specs_, places)) {
@@ -108,9 +109,11 @@ void WallModel::freeze_moves() {
       const Vec3 a = x[next] - x[facet.film[k]];
       const Vec3 b = x[last] - x[facet.film[k]];
       const double angle = std::atan2(a.cross(b).norm(), a.dot(b));
-      for (const int point : {facet.front[k], facet.back[k]}) {
-        around[point].facets.emplace_back(static_cast<int>(f), angle);
-        around[point].neighbours.insert({next, last});
+      for (const bool front : {true, false}) {
+        Around& here = around[front ? facet.front[k] : facet.back[k]];
+        here.facets.emplace_back(static_cast<int>(f), angle);
+        here.in_front.push_back(front ? 1 : 0);
+        here.neighbours.insert({next, last});
       }
     }
   }
@@ -156,7 +159,38 @@ WallModel::Follow WallModel::follow(const Around& around, int vertex,
     }
     result.rest.push_back({move.wall, rest});
   }
+  result.along = planes_.along(vertex);
+  for (std::size_t i = 0; result.along && i < around.facets.size(); ++i) {
+    const auto& [f, angle] = around.facets[i];
+    result.of_normal.push_back(
+        {.at = f, .weight = around.in_front[i] != 0 ? angle : -angle});
+  }
   return result;
+}
+
+Vec3 WallModel::offset(int point, const Points& film, const Points& normals,
+                       const std::vector<VectorX>& ratio) const {
+  const Follow& follow = follow_[point];
+  const int v = topology_.points[point].vertex;
+  Vec3 by = Vec3::Zero();
+  for (const Share& share : follow.normals) {
+    by += ratio[share.wall][v] * share.weight * normals[share.at];
+  }
+  for (const Share& share : follow.edges) {
+    by += ratio[share.wall][v] * share.weight * (film[share.at] - film[v]);
+  }
+  for (const WallMove& rest : follow.rest) {
+    by += ratio[rest.wall][v] * rest.by;
+  }
+  return by;
+}
+
+Vec3 WallModel::normal_sum(int point, const Points& normals) const {
+  Vec3 sum = Vec3::Zero();
+  for (const Share& share : follow_[point].of_normal) {
+    sum += share.weight * normals[share.at];
+  }
+  return sum;
 }
 
 Points WallModel::unit_normals(const Points& film) const {
@@ -220,15 +254,10 @@ Points WallModel::points_of(const Points& film,
     if (v < 0) {
       continue;
     }
-    Vec3 by = Vec3::Zero();
-    for (const Share& share : follow_[p].normals) {
-      by += ratio[share.wall][v] * share.weight * normals[share.at];
-    }
-    for (const Share& share : follow_[p].edges) {
-      by += ratio[share.wall][v] * share.weight * (film[share.at] - film[v]);
-    }
-    for (const WallMove& rest : follow_[p].rest) {
-      by += ratio[rest.wall][v] * rest.by;
+    const auto point = static_cast<int>(p);
+    Vec3 by = offset(point, film, normals, ratio);
+    if (const auto& along = follow_[p].along) {
+      by = in_planes(*along, normal_sum(point, normals).normalized(), by);
     }
     result[p] = film[v] + by;
   }
@@ -287,6 +316,18 @@ WallGradient WallModel::transpose(const Points& film,
       continue;
     }
     result.film[v] += by[p];
+    if (const auto& along = follow_[p].along) {
+      const auto point = static_cast<int>(p);
+      const Vec3 sum = normal_sum(point, normals);
+      const Vec3 n = sum.normalized();
+      const InPlanesGradient in = transpose_in_planes(
+          *along, n, offset(point, film, normals, ratio), by[p]);
+      const Vec3 by_sum = (in.normal - n * n.dot(in.normal)) / sum.norm();
+      for (const Share& share : follow_[p].of_normal) {
+        by_normals[share.at] += share.weight * by_sum;
+      }
+      by[p] = in.w;
+    }
     for (const Share& share : follow_[p].normals) {
       by_normals[share.at] += ratio[share.wall][v] * share.weight * by[p];
       by_ratio[share.wall][v] += share.weight * normals[share.at].dot(by[p]);

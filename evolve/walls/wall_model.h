@@ -10,9 +10,11 @@
 /// facets about v that look into its sector (wall_topology.h), x_j the vertices
 /// next to v. c, b and the tiny rest e, one set per w, are constants that give
 /// the offset found at the reference film exactly, so that the wall turns with
-/// its film.
+/// its film. Where v slides on planes the sum is brought into them
+/// (wall_planes.h) by n, the unit sum of these normals by angle.
 #pragma once
 
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -95,11 +97,14 @@ class WallModel {
     std::vector<Share> normals;
     std::vector<Share> edges;  // `at`: the other end
     std::vector<WallMove> rest;
+    std::optional<Mat3> along;     // of a vertex that slides
+    std::vector<Share> of_normal;  // of n there
   };
 
   struct Around {  // a wall point: facets of its sector, by corner angle
     std::vector<std::pair<int, double>> facets;
-    std::set<int> neighbours;  // film vertices
+    std::vector<char> in_front;  // of these: is it on the normal's side?
+    std::set<int> neighbours;    // film vertices
   };
 
   void freeze_moves();
@@ -114,9 +119,15 @@ class WallModel {
   Points points_of(const Points& film,
                    const std::vector<VectorX>& numbers) const;
   Points unit_normals(const Points& film) const;
+  /// The sum in y_k, before it is brought into planes.
+  Vec3 offset(int point, const Points& film, const Points& normals,
+              const std::vector<VectorX>& ratio) const;
+  /// Of a point that slides: sum of its normals by angle.
+  Vec3 normal_sum(int point, const Points& normals) const;
 
   std::vector<WallSpec> given_;
   Points reference_film_;
+  WallPlanes planes_;
   std::vector<std::vector<int>> vertices_of_;  // of the film, per wall
   WallTopology topology_;
   std::vector<WallSpec> specs_;  // given_, on the film

@@ -23,6 +23,7 @@ constexpr double kFlatHold = 1e-6;      // of the tangential move, see header
 constexpr double kLargestFix = 1.5;     // of a correction, per pass
 constexpr double kSlow = 0.95;          // a pass that gains less is the last
 constexpr double kTotalFix = 4.0;       // of all corrections together
+constexpr double kInEdge = 1e-9;        // of a facet's area
 constexpr double kInFront = 1e-9;       // rounding of n . d >= h, of d
 constexpr double kLeastSpanned = 1e-6;  // of planes that meet in a corner
 
@@ -40,11 +41,16 @@ Vec3 mitre(const Mat3& matrix, const Vec3& right) {
   return length > kLongestMitre ? Vec3(d * (kLongestMitre / length)) : d;
 }
 
+Vec3 mitre_in(const Mat3& along, const Mat3& matrix, const Vec3& right) {
+  return mitre(along * matrix * along, along * right);
+}
+
 /// Measures a wall; per vertex the range of measured / asked around it.
 class Gauge {
  public:
-  Gauge(const Sheet& sheet, const std::vector<double>& asked)
-      : sheet_(sheet), asked_(asked) {}
+  Gauge(const Sheet& sheet, const std::vector<double>& asked,
+        const SheetEnds& ends)
+      : sheet_(sheet), asked_(asked), ends_(ends) {}
 
   void measure(const Points& front, const Points& back) {
     low_.assign(asked_.size(), std::numeric_limits<double>::infinity());
@@ -78,7 +84,15 @@ class Gauge {
     asked /= count;
     // The same place on the other side is near the nearest.
     const double bound = (across / count - p).norm();
-    const double value = probe.nearest(p, bound).distance;
+    const FacetProbe::Hit hit = probe.nearest(p, bound);
+    const bool cut = hit.facet >= 0
+                         ? is_cut(other, hit)
+                         : std::all_of(corners.begin(), corners.end(),
+                                       [&](int v) { return ends_.slides(v); });
+    if (cut) {
+      return;
+    }
+    const double value = hit.distance;
     const double ratio = value / asked;
     if (ratio < least_) {
       least_ = ratio;
@@ -92,6 +106,27 @@ class Gauge {
       low_[v] = std::min(low_[v], ratio);
       high_[v] = std::max(high_[v], ratio);
     }
+  }
+
+  /// Does the place lie between corners that stay in planes?
+  bool is_cut(const Points& points, const FacetProbe::Hit& hit) const {
+    if (ends_.along.empty()) {
+      return false;
+    }
+    const Triangle& t = sheet_.film.facets[hit.facet];
+    const double all =
+        (points[t[1]] - points[t[0]]).cross(points[t[2]] - points[t[0]]).norm();
+    bool cut = false;
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 a = points[t[(k + 1) % 3]] - hit.point;
+      const Vec3 b = points[t[(k + 2) % 3]] - hit.point;
+      const bool counts = a.cross(b).norm() > kInEdge * all;
+      if (counts && !ends_.slides(t[k])) {
+        return false;
+      }
+      cut = cut || counts;
+    }
+    return cut;
   }
 
   void side(const Points& points, const Points& other) {
@@ -109,6 +144,7 @@ class Gauge {
 
   const Sheet& sheet_;
   const std::vector<double>& asked_;
+  const SheetEnds& ends_;
   std::vector<double> low_;
   std::vector<double> high_;
   double least_ = 0.0;
@@ -213,10 +249,17 @@ WallShares shares(WallSide side) {
 
 std::vector<Vec3> offset_directions(const Sheet& sheet,
                                     const std::vector<Jet>& jets,
-                                    const std::vector<double>& asked) {
+                                    const std::vector<double>& asked,
+                                    const SheetEnds& ends) {
   std::vector<Vec3> directions;
   directions.reserve(jets.size());
   for (int v = 0; v < static_cast<int>(jets.size()); ++v) {
+    const bool slides = ends.slides(v);
+    if (slides && sheet.on_crease[v] == 0) {
+      const Vec3& n = jets[v].normal;
+      directions.push_back(in_planes(*ends.along[v], n, n));
+      continue;
+    }
     Mat3 matrix = Mat3::Zero();
     Vec3 right = Vec3::Zero();
     for (int k = sheet.facet_start[v]; k < sheet.facet_start[v + 1]; ++k) {
@@ -227,7 +270,8 @@ std::vector<Vec3> offset_directions(const Sheet& sheet,
       right += weight * n;
     }
     if (sheet.on_crease[v] != 0) {
-      directions.push_back(mitre(matrix, right));
+      directions.push_back(slides ? mitre_in(*ends.along[v], matrix, right)
+                                  : mitre(matrix, right));
       continue;
     }
     const Vec3& n = jets[v].normal;
@@ -242,15 +286,18 @@ std::vector<Vec3> offset_directions(const Sheet& sheet,
 
 OffsetSides offset_sides(const Sheet& sheet, const std::vector<Vec3>& direction,
                          const std::vector<double>& asked,
-                         const ThickenOptions& options) {
+                         const ThickenOptions& options, const SheetEnds& ends) {
   const WallShares part = shares(options.side);
   std::vector<double> distance = asked;
-  Gauge gauge(sheet, asked);
+  Gauge gauge(sheet, asked, ends);
   OffsetSides best;
   double best_error = std::numeric_limits<double>::infinity();
   for (int pass = 0; pass <= options.max_corrections; ++pass) {
     Points front = moved(sheet, direction, distance, part.front);
     Points back = moved(sheet, direction, distance, -part.back);
+    for (Points* side : {&front, &back}) {
+      make_room(sheet, ends, *side);
+    }
     gauge.measure(front, back);
     const bool slow = gauge.worst() > kSlow * best_error;
     if (gauge.worst() < best_error) {
@@ -263,7 +310,7 @@ OffsetSides offset_sides(const Sheet& sheet, const std::vector<Vec3>& direction,
     }
     for (std::size_t v = 0; v < distance.size(); ++v) {
       // On a crease the mitre is the answer: its tip is further away.
-      if (sheet.on_crease[v] == 0) {
+      if (sheet.on_crease[v] == 0 && !ends.slides(static_cast<int>(v))) {
         const double fix = std::clamp(1.0 / gauge.middle(static_cast<int>(v)),
                                       1.0 / kLargestFix, kLargestFix);
         distance[v] = std::clamp(distance[v] * fix, asked[v] / kTotalFix,

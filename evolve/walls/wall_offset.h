@@ -7,6 +7,7 @@
 #include "evolve/walls/jet_fit.h"
 #include "evolve/walls/sheet.h"
 #include "evolve/walls/thicken.h"
+#include "evolve/walls/wall_ends.h"
 
 namespace meniscus::walls {
 
@@ -36,10 +37,12 @@ Mat3 mitre_inverse(const Mat3& matrix, double spanned = 0.05);
 /// space that the facets' normals span clearly, elsewhere with the part off the
 /// jet's normal held back by weight (k t)^2: with t far below the edges the
 /// facets' planes alone count, and a thick wall keeps to the normal, without
-/// which its compressed side folds.
+/// which its compressed side folds. Where the sheet slides the move is the one
+/// in the plane that leaves the jet's tangent plane by 1.
 std::vector<Vec3> offset_directions(const Sheet& sheet,
                                     const std::vector<Jet>& jets,
-                                    const std::vector<double>& asked);
+                                    const std::vector<double>& asked,
+                                    const SheetEnds& ends = {});
 
 struct OffsetSides {
   Points front;
@@ -51,7 +54,7 @@ struct OffsetSides {
 
 /// A plane n . d = h that an offset point keeps in front of.
 struct OffsetPlane {
-  Vec3 normal = Vec3::Zero();  // unit
+  Vec3 normal = Vec3::Zero();  // unit, or its part along planes
   double offset = 0.0;         // [length]
 };
 
@@ -76,10 +79,13 @@ struct OffsetSheet {
 };
 
 /// Moves the sheet by `asked` (per vertex, [length]) and corrects the moves by
-/// the thickness measured; the best state met is returned.
+/// the thickness measured; the best state met is returned. A side that is
+/// nearest where it ends in a plane is cut there: that is no thickness, and
+/// moves in planes are not corrected.
 OffsetSides offset_sides(const Sheet& sheet, const std::vector<Vec3>& direction,
                          const std::vector<double>& asked,
-                         const ThickenOptions& options);
+                         const ThickenOptions& options,
+                         const SheetEnds& ends = {});
 
 /// What else is in a wall's way, and whether all of it is wanted.
 struct SafeOptions {

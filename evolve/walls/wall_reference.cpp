@@ -189,8 +189,10 @@ class Reference {
     const std::vector<Jet> jets = fit_jets(sheet);
     ThickenOptions options;
     options.side = side;
-    OffsetSides sides = offset_sides(
-        sheet, offset_directions(sheet, jets, asked), asked, options);
+    const SheetEnds ends = ends_of(sheet, jets, films_.planes);
+    OffsetSides sides =
+        offset_sides(sheet, offset_directions(sheet, jets, asked, ends), asked,
+                     options, ends);
     std::vector<double> safe_at;
     SafeThickness safe = safe_thickness(
         sheet, jets, asked, side,
@@ -280,10 +282,12 @@ class Reference {
       }
     }
     for (const auto& [point, sides] : corners) {
+      const Mat3 along = films_.planes.along(topology_.points[point].vertex)
+                             .value_or(Mat3::Identity());
       std::vector<OffsetPlane> planes;
       std::vector<int> walls;
       for (const auto& [key, side] : sides) {
-        planes.push_back({side.normals.normalized(), side.offset});
+        planes.push_back({along * side.normals.normalized(), side.offset});
         walls.push_back(side.wall);
       }
       const OffsetCorner corner = offset_corner(planes);
@@ -315,8 +319,11 @@ class Reference {
         {topology_, films_, sheets, walls_,
          [&](int wall, int v) { return asked_.at(wall, v); }, result_.moves});
     for (std::size_t p = 0; p < added.size(); ++p) {
+      const int v = topology_.points[p].vertex;
+      const Mat3 along = (v < 0 ? std::nullopt : films_.planes.along(v))
+                             .value_or(Mat3::Identity());
       for (const WallMove& move : added[p]) {
-        add_move(move, result_.moves[p]);
+        add_move({move.wall, along * move.by}, result_.moves[p]);
       }
     }
   }

@@ -147,6 +147,14 @@ class Builder {
     }
     std::map<int, int> unnamed;  // per group its number
     for (RimEdge& rim : rim_edges_) {
+      const std::string& film =
+          films_.mesh.labels[result_.facets[rim.facet].label];
+      const int plane = films_.planes.common(rim.film[0], rim.film[1]);
+      if (plane >= 0) {
+        rim_label_.push_back(
+            label_named(film + "/" + films_.planes.planes[plane].rim));
+        continue;
+      }
       const std::vector<int>& there = curves[rim.film[1]];
       std::string curve;
       for (const int r : curves[rim.film[0]]) {
@@ -160,9 +168,8 @@ class Builder {
         curve = std::to_string(
             unnamed.try_emplace(rim.group, number).first->second);
       }
-      const int film = result_.facets[rim.facet].label;
       rim_label_.push_back(
-          label_named(films_.mesh.labels[film] + "/rim:" + curve));
+          label_named(std::string(film).append("/rim:").append(curve)));
     }
   }
 

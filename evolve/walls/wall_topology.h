@@ -11,6 +11,7 @@
 #include "core/geometry/surface_mesh.h"
 #include "core/geometry/surface_nodes.h"
 #include "evolve/walls/thicken.h"
+#include "evolve/walls/wall_planes.h"
 
 namespace meniscus::walls {
 
@@ -23,6 +24,7 @@ struct WallFilms {
   EdgeMiddles middles;        // of the nested refinements
   int levels = 0;             // how many of them
   std::vector<WallRim> rims;  // curves, with all of their points
+  WallPlanes planes;          // on which the films slide
 };
 
 /// A point of a wall.
@@ -46,8 +48,8 @@ struct WallTopology {
   std::vector<WallPoint> points;  // of all levels
   std::vector<WallFacet> facets;  // of the finest
   /// Closed and outward; labels "F", then "F/back" for every film, then
-  /// "F/rim:CURVE" (thicken.h). Neither has coordinates; corners are wall
-  /// points.
+  /// "F/rim:CURVE" (thicken.h) or in a plane "F/" and its name. Neither has
+  /// coordinates; corners are wall points.
   SurfaceMesh coarse;
   SurfaceMesh fine;
   EdgeMiddles middles;         // of wall points, all levels

@@ -331,6 +331,7 @@ films::FilmSystem films_of(const Case& input, const CaseValues& values) {
   if (!values.are_rates()) {
     refine_curves(input, system);
   }
+  make_cells(input, system);
   return system;
 }
 
@@ -391,6 +392,11 @@ bool check_rim_shapes(const Case& input, const walls::WallSpec& wall,
             "ends at '{}' (they end at {})",
             where, splines->first, splines->second, wall.name, curve,
             fmt::join(ends, ", ")));
+      } else if (slides_at(input, curve)) {
+        values.problems().push_back(fmt::format(
+            "{} has a shape between curves '{}' and '{}'; the film only begins "
+            "at '{}' and slides: take curves that hold it, or a shape of space",
+            where, splines->first, splines->second, curve));
       }
     }
     if (splines->around > 1 && wall.films.size() > 1) {

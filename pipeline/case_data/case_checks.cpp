@@ -14,6 +14,8 @@
 #include "pipeline/case_data/case_curves.h"
 #include "pipeline/case_data/case_loads.h"
 #include "pipeline/case_data/case_sides.h"
+#include "pipeline/case_data/case_symmetry.h"
+#include "pipeline/case_data/case_wetted.h"
 #include "pipeline/case_data/design_vectors.h"
 
 namespace meniscus::case_data {
@@ -74,7 +76,7 @@ void check_use(const Case& input, CaseProblems& problems) {
   for (const CapEntry& cap : input.caps) {
     const std::vector<std::string> curves = cap.spec.curves();
     used_curves.insert(curves.begin(), curves.end());
-    if (used_surfaces.count(cap.spec.name) == 0) {
+    if (used_surfaces.count(cap.spec.name) == 0 && cap.symmetry < 0) {
       problems.add(cap.line,
                    fmt::format("solid '{}' encloses no body; add it to a "
                                "body's enclosed_by or take it out",
@@ -723,6 +725,17 @@ std::vector<std::string> curves_of_wall(const Case& input,
   return curves;
 }
 
+namespace {
+
+bool share(const std::vector<std::string>& a,
+           const std::vector<std::string>& b) {
+  return std::any_of(a.begin(), a.end(), [&](const std::string& name) {
+    return std::find(b.begin(), b.end(), name) != b.end();
+  });
+}
+
+}  // namespace
+
 std::vector<std::string> wall_surface_names(const Case& input) {
   std::map<std::string, int> uses;  // of curves by films with walls
   for (const WallEntry& wall : input.walls) {
@@ -742,11 +755,21 @@ std::vector<std::string> wall_surface_names(const Case& input) {
         const bool is_free = std::any_of(
             input.curves.begin(), input.curves.end(),
             [&](const CurveEntry& c) { return c.free && c.name == curve; });
-        if (uses[curve] == 1 && !is_free) {
+        if (uses[curve] == 1 && !is_free && !slides_at(input, curve)) {
           names.push_back(film.spec.name + "/rim:" + curve);
         }
       }
+      for (const CapEntry& cap : input.caps) {
+        if (cap.wetted && cap.symmetry < 0 &&
+            share(cap.spec.curves(), film.spec.curves)) {
+          names.push_back(film.spec.name + "/rim:" + cap.spec.name);
+        }
+      }
     }
+  }
+  for (std::size_t p = 0; p < input.symmetry.size(); ++p) {
+    const auto ends = wall_ends(input, static_cast<int>(p));
+    names.insert(names.end(), ends.begin(), ends.end());
   }
   return names;
 }

@@ -7,6 +7,7 @@
 
 #include "pipeline/case_data/case_checks.h"
 #include "pipeline/case_data/case_sides.h"
+#include "pipeline/case_data/case_wetted.h"
 
 namespace meniscus::case_data {
 
@@ -136,7 +137,7 @@ void check_caps(const Case& input, CaseProblems& problems) {
   };
   std::map<std::string, std::string> across;
   for (const CapEntry& cap : input.caps) {
-    if (!is_flat(cap)) {
+    if (!is_flat(cap) || (cap.wetted && is_cell(input, cap.spec.curve))) {
       continue;
     }
     const auto [first, is_new] = across.emplace(cap.spec.curve, cap.spec.name);
@@ -175,7 +176,8 @@ void check_wetted_curve(const Case& input, const CapEntry& cap,
     }
   }
   for (const CapEntry& other : input.caps) {
-    if (is_among(other.spec.curves(), curve) && &other != &cap) {
+    if (is_among(other.spec.curves(), curve) && &other != &cap &&
+        !(other.wetted && is_cell(input, curve))) {
       ends.push_back(other.spec.name);
     }
   }
@@ -237,6 +239,9 @@ void check_closed(const Case& input, const BodyEntry& body,
     if (surfaces.size() == 1 && may_join_by_sides(input, curve)) {
       continue;  // other faces may have its sides: check_sides() knows
     }
+    if (is_cell(input, curve)) {
+      continue;  // its walls end where they meet
+    }
     if (surfaces.size() != 2) {
       problems.add(
           body.enclosure_line,
@@ -258,12 +263,16 @@ void check_wetted_walls(const Case& input, CaseProblems& problems) {
   for (const WallEntry& wall : input.walls) {
     const std::vector<std::string> curves = curves_of_wall(input, wall);
     for (const CapEntry& cap : input.caps) {
-      if (cap.wetted && is_among(curves, cap.spec.curve)) {
+      const std::vector<std::string> rims = cap.spec.curves();
+      if (cap.wetted && cap.wetted->kind != films::WallKind::Plane &&
+          std::any_of(rims.begin(), rims.end(), [&](const std::string& rim) {
+            return is_among(curves, rim);
+          })) {
         problems.add(
             wall.line,
-            fmt::format("walls.{} is of a film that slides on the wall of "
-                        "'{}', which the rim of a film with a thickness would "
-                        "leave; make '{}' a cap, or fill a body instead",
+            fmt::format("walls.{} is of a film that slides on the bent wall of "
+                        "'{}'; films with a thickness slide on planes only: "
+                        "make '{}' a cap, or fill a body instead",
                         wall.name, cap.spec.name, cap.spec.name));
       }
     }

@@ -13,7 +13,7 @@ namespace meniscus::case_data {
 
 namespace {
 
-constexpr double kAlongPlane = 1e-9;  // of a force
+constexpr double kAlongPlane = 1e-9;  // of a force, or a wall's normal
 
 bool is_across(const Reach& reach) {
   return reach.most > reach.rounding && reach.least < -reach.rounding;
@@ -128,14 +128,27 @@ class CutCheck {
       }
     }
     for (const CapEntry& cap : input_.caps) {
-      if (holds_some(cut_, cap.spec.curves()) &&
-          (cap.is_file || (cap.wetted && cap.symmetry < 0))) {
-        tell(cap.line,
-             cap.is_file ? "a solid of given faces at a curve that"
-                         : "a wetted solid at a curve that",
+      if (!holds_some(cut_, cap.spec.curves())) {
+        continue;
+      }
+      if (cap.is_file) {
+        tell(cap.line, "a solid of given faces at a curve that",
              "draw the whole");
+      } else if (cap.wetted && cap.symmetry < 0 && !is_own_image(*cap.wetted)) {
+        tell(cap.line,
+             "a solid that is wetted on a bent or slanting wall, at a curve "
+             "that",
+             "expected a plane at right angles to it, or draw the whole");
       }
     }
+  }
+
+  bool is_own_image(const WettedWall& wall) const {
+    if (wall.kind != films::WallKind::Plane) {
+      return false;
+    }
+    const Vec3 normal = values_.at(wall.normal);
+    return std::abs(plane_.normal.dot(normal)) <= kAlongPlane * normal.norm();
   }
 
   /// Forces through points, by pins and with moments are shared out over a half

@@ -162,6 +162,8 @@ struct SymmetryPlane {
   Vec3 at = Vec3::Zero();       // a point of it [length]
   Vec3 normal = Vec3::UnitZ();  // of length 1
   SourceLine line = 0;
+  std::vector<std::string> films;   // that slide on it
+  std::vector<std::string> curves;  // of films, of which a side lies in it
 };
 
 struct CapEntry {

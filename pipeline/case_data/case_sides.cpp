@@ -8,6 +8,7 @@
 
 #include "evolve/films/shared_sides.h"
 #include "pipeline/case_data/case_checks.h"
+#include "pipeline/case_data/case_wetted.h"
 #include "pipeline/case_data/feature_shapes.h"
 
 namespace meniscus::case_data {
@@ -177,7 +178,7 @@ void check_free_sides(const Case& input, const films::FilmSystem& system,
       const auto at = first.find(own);
       const std::set<std::string>& there =
           films[at == first.end() ? own : at->second];
-      if (is_free && there.size() < 3) {
+      if (is_free && there.size() < 3 && !is_cell(input, curve.name)) {
         values.problems().push_back(fmt::format(
             "{}: the side from {} to {} of curve '{}' is free, and {} film{} "
             "there{}{}; lines balance where three films or more meet: let more "
@@ -203,7 +204,8 @@ void check_sides(const Case& input, const films::FilmSystem& system,
     const auto at_sides = surfaces_at_sides(system, system.bodies[b], first);
     std::map<int, std::vector<SideName>> open;  // by curve
     for (const auto& [side, surfaces] : at_sides) {
-      if (surfaces.size() != 2) {
+      const auto curve = static_cast<std::size_t>(side.first);
+      if (surfaces.size() != 2 && !is_cell(input, input.curves[curve].name)) {
         open[side.first].push_back(side);
       }
     }

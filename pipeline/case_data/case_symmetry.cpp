@@ -8,6 +8,10 @@
 
 #include <fmt/format.h>
 
+#include "evolve/films/shared_sides.h"
+#include "pipeline/case_data/case_checks.h"
+#include "pipeline/case_data/case_wetted.h"
+
 namespace meniscus::case_data {
 
 namespace {
@@ -30,15 +34,19 @@ QuantityVector constants(const Vec3& vector, const char* key, SourceLine line) {
   return result;
 }
 
-/// The face that a plane cuts of a body: films end there at these curves, and
-/// where it `cuts` others, of this or another body.
-CapEntry cut_face(const Case& input, const std::string& body, int plane,
+std::string plane_name(int plane) {
+  return fmt::format("symmetry_{}", plane + 1);
+}
+
+/// A face that a plane cuts: films end there at these curves, and where it
+/// `cuts` others, of this or another body.
+CapEntry cut_face(const Case& input, const std::string& name, int plane,
                   const std::vector<std::string>& curves, bool cuts) {
   const SymmetryPlane& at = input.symmetry[static_cast<std::size_t>(plane)];
-  CapEntry face{.spec = {.name = fmt::format("{}/symmetry_{}", body, plane + 1),
-                         .curve = curves.empty() ? "" : curves.front()},
-                .symmetry = plane,
-                .line = at.line};
+  CapEntry face{
+      .spec = {.name = name, .curve = curves.empty() ? "" : curves.front()},
+      .symmetry = plane,
+      .line = at.line};
   if (!curves.empty()) {
     face.spec.more.assign(curves.begin() + 1, curves.end());
   }
@@ -52,23 +60,27 @@ CapEntry cut_face(const Case& input, const std::string& body, int plane,
   return face;
 }
 
-/// Those of a body's films that a plane holds and no solid of the case closes.
-std::vector<std::string> open_in_plane(const Case& input, const BodyEntry& body,
+/// Curves that a solid of the case closes.
+bool is_closed(const Case& input, const std::string& curve) {
+  return std::any_of(input.caps.begin(), input.caps.end(),
+                     [&](const CapEntry& cap) {
+                       return !(cap.wetted && cap.symmetry >= 0) &&
+                              names(cap.spec.curves(), curve);
+                     });
+}
+
+/// Those in a plane at which some of the films end and no solid does.
+std::vector<std::string> open_in_plane(const Case& input,
+                                       const std::vector<std::string>& films,
                                        const std::set<std::string>& in_plane) {
   std::vector<std::string> result;
-  const auto closed = [&](const std::string& curve) {
-    return std::any_of(input.caps.begin(), input.caps.end(),
-                       [&](const CapEntry& cap) {
-                         return !(cap.wetted && cap.symmetry >= 0) &&
-                                names(cap.spec.curves(), curve);
-                       });
-  };
   for (const FilmEntry& film : input.films) {
-    if (!names(body.enclosed_by, film.spec.name)) {
+    if (!names(films, film.spec.name)) {
       continue;
     }
     for (const std::string& curve : film.spec.curves) {
-      if (in_plane.contains(curve) && !names(result, curve) && !closed(curve)) {
+      if (in_plane.contains(curve) && !names(result, curve) &&
+          !is_closed(input, curve)) {
         result.push_back(curve);
       }
     }
@@ -76,17 +88,47 @@ std::vector<std::string> open_in_plane(const Case& input, const BodyEntry& body,
   return result;
 }
 
+/// Films that a plane cuts, or that end at a curve in it and slide.
+std::vector<std::string> sliding_films(const Case& input,
+                                       const std::set<std::string>& in_plane,
+                                       const std::vector<std::string>& cut) {
+  std::vector<std::string> result;
+  for (const FilmEntry& film : input.films) {
+    if (names(cut, film.spec.name) ||
+        !open_in_plane(input, {film.spec.name}, in_plane).empty()) {
+      result.push_back(film.spec.name);
+    }
+  }
+  return result;
+}
+
+/// Those of the films that enclose no body.
+std::vector<std::string> without_body(const Case& input,
+                                      std::vector<std::string> films) {
+  std::erase_if(films, [&](const std::string& film) {
+    return std::any_of(
+        input.bodies.begin(), input.bodies.end(),
+        [&](const BodyEntry& body) { return names(body.enclosed_by, film); });
+  });
+  return films;
+}
+
 void add_faces(Case& input, int plane, const std::set<std::string>& in_plane,
                const std::vector<std::string>& cut, CaseProblems& problems) {
+  SymmetryPlane& at = input.symmetry[static_cast<std::size_t>(plane)];
+  at.films = sliding_films(input, in_plane, cut);
+  const std::vector<std::string> alone = without_body(input, at.films);
+  // All faces in a plane that cuts are cut alike.
+  const bool any_cut = !cut.empty() || !alone.empty();
   std::map<std::string, std::string> body_at;
   for (BodyEntry& body : input.bodies) {
     const std::vector<std::string> curves =
-        open_in_plane(input, body, in_plane);
+        open_in_plane(input, body.enclosed_by, in_plane);
     for (const std::string& curve : curves) {
       const auto [other, is_new] = body_at.emplace(curve, body.name);
       if (!is_new) {
         problems.add(
-            input.symmetry[static_cast<std::size_t>(plane)].line,
+            at.line,
             fmt::format("curve '{}' lies in plane {} of symmetry and bounds "
                         "bodies '{}' and '{}'; a film that slides there is of "
                         "one body: let one body end elsewhere, or close both "
@@ -99,11 +141,14 @@ void add_faces(Case& input, int plane, const std::set<std::string>& in_plane,
         cut.begin(), cut.end(),
         [&](const std::string& name) { return names(body.enclosed_by, name); });
     if (!curves.empty() || cuts) {
-      // All faces in a plane that cuts are cut alike.
-      input.caps.push_back(
-          cut_face(input, body.name, plane, curves, !cut.empty()));
+      input.caps.push_back(cut_face(input, body.name + "/" + plane_name(plane),
+                                    plane, curves, any_cut));
       body.enclosed_by.push_back(input.caps.back().spec.name);
     }
+  }
+  if (!alone.empty()) {  // no face: where they slide
+    input.caps.push_back(cut_face(input, plane_name(plane), plane,
+                                  open_in_plane(input, alone, in_plane), true));
   }
 }
 
@@ -113,12 +158,33 @@ int symmetric_parts(const Case& input) {
   return 1 << static_cast<int>(input.symmetry.size());
 }
 
+std::string wall_end(const std::string& film, int plane) {
+  return film + "/" + plane_name(plane);
+}
+
+std::vector<std::string> wall_ends(const Case& input, int plane) {
+  std::vector<std::string> result;
+  for (const std::string& film :
+       input.symmetry[static_cast<std::size_t>(plane)].films) {
+    if (std::any_of(
+            input.walls.begin(), input.walls.end(),
+            [&](const WallEntry& wall) { return names(wall.films, film); })) {
+      result.push_back(wall_end(film, plane));
+    }
+  }
+  return result;
+}
+
 std::vector<std::string> cut_faces(const Case& input) {
   std::vector<std::string> result;
   for (const CapEntry& cap : input.caps) {
     if (cap.symmetry >= 0) {
       result.push_back(cap.spec.name);
     }
+  }
+  for (std::size_t p = 0; p < input.symmetry.size(); ++p) {
+    const auto ends = wall_ends(input, static_cast<int>(p));
+    result.insert(result.end(), ends.begin(), ends.end());
   }
   return result;
 }
@@ -130,6 +196,10 @@ std::vector<std::string> cuts_of_whole(const Case& input, std::size_t plane) {
       result.push_back(cap.spec.name);
       result.push_back(image_name(cap.spec.name));
     }
+  }
+  for (const std::string& end : wall_ends(input, static_cast<int>(plane))) {
+    result.push_back(end);
+    result.push_back(image_name(end));
   }
   return result;
 }
@@ -177,11 +247,57 @@ void check_planes(const Case& input, CaseProblems& problems) {
   }
 }
 
+namespace {
+
+bool has_side_in(const SymmetryPlane& plane, const curves::Curve& curve) {
+  const Reach reach = reach_of(plane, curve);
+  const auto lies = [&](const Vec3& place) {
+    return std::abs(beyond(plane, place)) <= reach.rounding;
+  };
+  const std::vector<films::CurveSide> sides = films::sides_of(curve.shape);
+  return !reach.is_in_plane() &&
+         std::any_of(
+             sides.begin(), sides.end(), [&](const films::CurveSide& side) {
+               return lies(side.from) && lies(side.middle) && lies(side.to);
+             });
+}
+
+/// SymmetryPlane::curves.
+void find_sides_in_planes(Case& input,
+                          const std::vector<curves::Curve>& curves) {
+  for (SymmetryPlane& plane : input.symmetry) {
+    for (const curves::Curve& curve : curves) {
+      const bool of_film = std::any_of(
+          input.films.begin(), input.films.end(), [&](const FilmEntry& film) {
+            return names(film.spec.curves, curve.name);
+          });
+      if (of_film && has_side_in(plane, curve)) {
+        plane.curves.push_back(curve.name);
+      }
+    }
+  }
+}
+
+/// The curves that a plane cuts, or of whose cells it is a wall.
+std::set<std::string> ended_by(const Case& input, std::size_t plane,
+                               const std::vector<curves::Curve>& curves) {
+  std::set<std::string> result = cut_by(input.symmetry[plane], curves);
+  for (const std::string& curve : input.symmetry[plane].curves) {
+    if (is_cell(input, curve)) {
+      result.insert(curve);
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
 void add_cut_faces(Case& input, CaseProblems& problems) {
   if (input.symmetry.empty()) {
     return;
   }
   const std::vector<curves::Curve> curves = curves_at_start(input);
+  find_sides_in_planes(input, curves);
   for (std::size_t p = 0; p < input.symmetry.size(); ++p) {
     const int plane = static_cast<int>(p);
     std::set<std::string> in_plane;
@@ -200,25 +316,51 @@ void add_cut_faces(Case& input, CaseProblems& problems) {
       }
     }
     add_faces(input, plane, in_plane,
-              surfaces_at(input, cut_by(input.symmetry[p], curves)), problems);
+              surfaces_at(input, ended_by(input, p, curves)), problems);
   }
 }
 
 namespace {
 
-/// Faces of solid bodies: those of void ones are not meshed.
+/// Faces that are meshed: of solid bodies, and ends of walls.
 std::vector<std::string> held_faces(const Case& input) {
-  std::vector<std::string> result;
-  for (const std::string& face : cut_faces(input)) {
-    if (std::any_of(input.bodies.begin(), input.bodies.end(),
-                    [&](const BodyEntry& body) {
-                      return body.material != kVoid &&
-                             names(body.enclosed_by, face);
-                    })) {
-      result.push_back(face);
+  std::vector<std::string> result = cut_faces(input);
+  std::erase_if(result, [&](const std::string& face) {
+    const bool is_cap =
+        std::any_of(input.caps.begin(), input.caps.end(),
+                    [&](const CapEntry& cap) { return cap.spec.name == face; });
+    return is_cap && std::none_of(input.bodies.begin(), input.bodies.end(),
+                                  [&](const BodyEntry& body) {
+                                    return body.material != kVoid &&
+                                           names(body.enclosed_by, face);
+                                  });
+  });
+  return result;
+}
+
+/// A wall's end at a curve that a solid closes in the plane would not lie in
+/// it.
+void refuse_held_walls(const Case& input, CaseProblems& problems) {
+  for (const CapEntry& cap : input.caps) {
+    if (cap.symmetry < 0 || cap.wetted) {
+      continue;
+    }
+    const std::vector<std::string> rims = cap.spec.curves();
+    for (const WallEntry& wall : input.walls) {
+      const std::vector<std::string> curves = curves_of_wall(input, wall);
+      if (std::any_of(rims.begin(), rims.end(), [&](const std::string& rim) {
+            return names(curves, rim);
+          })) {
+        problems.add(
+            wall.line,
+            fmt::format("walls.{} is of a film that solid '{}' holds in plane "
+                        "{} of symmetry; take '{}' out, so that the film "
+                        "slides there, or draw the whole",
+                        wall.name, cap.spec.name, cap.symmetry + 1,
+                        cap.spec.name));
+      }
     }
   }
-  return result;
 }
 
 /// The first of the surfaces that is a cut face; empty: none.
@@ -361,8 +503,9 @@ void apply_symmetry(Case& input, CaseProblems& problems) {
   const std::vector<std::string> faces = held_faces(input);
   if (faces.empty()) {
     problems.add(line,
-                 "no body ends in a plane of symmetry: let it cut curves, let "
-                 "films end at a closed curve in it, or give it a solid that "
+                 "no body or wall ends in a plane of symmetry: let it cut "
+                 "curves, let films end at a closed curve in it, or at a "
+                 "polygon whose sides lie in planes, or give it a solid that "
                  "lies in it");
   }
   for (LoadCaseEntry& load_case : input.load_cases) {
@@ -379,12 +522,10 @@ void apply_symmetry(Case& input, CaseProblems& problems) {
     apply_to(response, faces, symmetric_parts(input), problems);
   }
   refuse_fillets(input, problems);
+  refuse_held_walls(input, problems);
   const auto refuse = [&](SourceLine at, const std::string& what) {
     problems.add(at, what + " cannot be with [symmetry] yet; draw the whole");
   };
-  if (!input.walls.empty()) {
-    refuse(input.walls.front().line, "walls");
-  }
   if (!input.step_solids.empty()) {
     refuse(input.step_solids.front().line, "solids of STEP files");
   }

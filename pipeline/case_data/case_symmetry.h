@@ -21,7 +21,8 @@ void check_planes(const Case& input, CaseProblems& problems);
 /// After the bodies, before they are checked: finds the solids that lie in a
 /// plane (CapEntry::symmetry), and closes each body whose films end there, or
 /// of whose curves the plane cuts some, by a wetted face BODY/symmetry_1 (of
-/// the first plane) at 90 degrees.
+/// the first plane) at 90 degrees. Films of no body slide on the plane itself,
+/// symmetry_1.
 void add_cut_faces(Case& input, CaseProblems& problems);
 
 /// After the responses: holds the cut faces in every load case, notes loads,
@@ -34,7 +35,14 @@ void apply_symmetry(Case& input, CaseProblems& problems);
 void check_symmetry(const Case& input, const EvaluatedCase& inputs,
                     const CaseValues& values);
 
-/// The names of the cut faces, in the order of the solids.
+/// What the end of a film's wall in a plane is called: "web/symmetry_1".
+std::string wall_end(const std::string& film, int plane);
+
+/// Those of the walls whose films slide on a plane.
+std::vector<std::string> wall_ends(const Case& input, int plane);
+
+/// The names of the cut faces, in the order of the solids, then those of the
+/// walls' ends.
 std::vector<std::string> cut_faces(const Case& input);
 
 /// What the images of a surface are called: "pad/image"; those of images

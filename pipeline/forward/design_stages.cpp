@@ -87,6 +87,12 @@ bool move_mesh(const FrozenPart& part, StagedDesign& staged) {
                          : Failure{FailureKind::NotANumber, error.what()};
     return false;
   }
+  if (part.walls) {
+    result.failure = beyond_planes(part.input, surface.base);
+    if (result.failure) {
+      return false;
+    }
+  }
   TetMesh& mesh = staged.fields.mesh;
   mesh = part.base_mesh;
   mesh_tet::move_quadratic(mesh, part.motion->move(surface.base.points),

@@ -85,7 +85,10 @@ bool freeze_film(const case_data::EvaluatedCase& inputs,
     monitor.progress({.stage = "film", .detail = "thickening the films"});
     part.walls.emplace(wall_model(inputs, *part.film, film.points));
     start.failure = wall_failure(inputs, *part.walls);
-    if (start.failure) {
+    if (!start.failure) {
+      start.failure =
+          beyond_planes(part.input, part.surface(inputs, film.points).base);
+    } else {
       const walls::ThickWall& wall = first_with_findings(*part.walls);
       part.unfilled = wall.surface;
       part.findings = wall.findings;

@@ -30,8 +30,9 @@ std::optional<Failure> beyond_planes(const case_data::Case& input,
           FailureKind::SurfaceInvalid,
           fmt::format(
               "'{}' passes plane {} of symmetry ({}) by {:.4g} at ({:.4g}, "
-              "{:.4g}, {:.4g}) and overlaps its image; take less volume, move "
-              "its curves away from the plane, or turn the normal of a disk's "
+              "{:.4g}, {:.4g}) and overlaps its image; take less volume "
+              "or thickness, move its curves away from the plane, or turn the "
+              "normal of a disk's "
               "curve that lies in it",
               films.labels[label], p + 1, place(input, input.symmetry[p].line),
               most, at.x(), at.y(), at.z())};

@@ -529,8 +529,8 @@ TableSpec solid_table() {
         case_data::choices_of(solid_kinds()), "plate|pad|faces"},
        {"curve", K::Name, D::None, false,
         "of cap, ring: its rim; of wetted: where the film begins, on the wall, "
-        "or within 0.15 of its size of one that is bent; it holds "
-        "nothing"},
+        "or within 0.15 of its size of one that is bent; or a polygon with a "
+        "side on each of several planes; it holds nothing"},
        {"inner", K::Name, D::None, false, "of ring: the rim of its hole"},
        {"holes", K::Names, D::None, false,
         "of cap: curves in its plane that it leaves open; of wetted likewise, "

@@ -80,6 +80,28 @@ struct HeldNodes {
   std::vector<io::DeckEquation> equations;
 };
 
+bool is_along_axis(const io::DeckEquation& row) {
+  return (row.coefficients.array() != 0.0).count() == 1;
+}
+
+/// Decks have no equation with a right-hand side: where a component beside it
+/// is held at a place `u`, a multiple of that takes it up. False where none is.
+bool make_homogeneous(const std::array<bool, 3>& fix, const Vec3& u,
+                      io::DeckEquation& row) {
+  const double right = row.coefficients.dot(u);
+  if (std::abs(right) <= kNothing * u.norm()) {
+    return true;
+  }
+  for (std::size_t k = 0; k < fix.size(); ++k) {
+    const auto at = static_cast<Eigen::Index>(k);
+    if (fix[k] && std::abs(u[at]) > kNothing * u.norm()) {
+      row.coefficients[at] -= right / u[at];
+      return true;
+    }
+  }
+  return false;
+}
+
 HeldNodes held_nodes(const TetMesh& mesh, const loads::LoadCase& load_case) {
   const solver::NodeFreedom freedom =
       supports::node_freedom(mesh, supports::held_directions(mesh, load_case));
@@ -93,18 +115,23 @@ HeldNodes held_nodes(const TetMesh& mesh, const loads::LoadCase& load_case) {
     const Vec3 u = enforced.size() == 0
                        ? Vec3(Vec3::Zero())
                        : Vec3(enforced.segment<3>(3L * freedom.held[h]));
-    for (const io::DeckEquation& row :
-         solved_rows(freedom.held[h], freedom.projector[h])) {
-      if ((row.coefficients.array() != 0.0).count() == 1) {
+    const std::vector<io::DeckEquation> rows =
+        solved_rows(freedom.held[h], freedom.projector[h]);
+    for (const io::DeckEquation& row : rows) {
+      if (is_along_axis(row)) {
         fix[row.dependent] = true;
         at[row.dependent] = u[row.dependent];
-      } else if (std::abs(row.coefficients.dot(u)) > kNothing * u.norm()) {
+      }
+    }
+    for (io::DeckEquation row : rows) {
+      if (!is_along_axis(row) && !make_homogeneous(fix, u, row)) {
         throw InvalidInput(fmt::format(
             "load case '{}' enforces a displacement along an oblique "
             "direction, which decks do not hold; export a case whose supports "
             "with a displacement are along x, y, z",
             load_case.name));
-      } else {
+      }
+      if (!is_along_axis(row)) {
         result.equations.push_back(row);
       }
     }

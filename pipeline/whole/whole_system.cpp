@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "pipeline/case_data/case_symmetry.h"
+#include "pipeline/case_data/case_wetted.h"
 
 namespace meniscus::whole {
 
@@ -177,6 +178,14 @@ class SystemMirror {
 
 WholeSystem whole_system(const case_data::Case& input,
                          const films::FilmSystem& drawn) {
+  for (const case_data::CurveEntry& curve : input.curves) {
+    if (case_data::is_cell(input, curve.name)) {
+      throw InvalidInput(fmt::format(
+          "the film on '{}', which slides on the planes of a cell, cannot be "
+          "written with smooth faces; write it with facets",
+          curve.name));
+    }
+  }
   WholeSystem result{drawn, {}};
   for (std::size_t p = 0; p < input.symmetry.size(); ++p) {
     std::set<std::string> own;

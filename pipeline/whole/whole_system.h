@@ -18,8 +18,8 @@ struct WholeSystem {
 /// The system without the faces of planes that cut, with the images of curves
 /// and surfaces beside these planes (pad/image in the first, pad/image_2 in the
 /// second) and the volumes of all images together. Throws InvalidInput where
-/// that is not known: fields, films and solids that end in such a plane too,
-/// films whose kind is of fewer curves.
+/// that is not known: cells, fields, films and solids that end in such a plane
+/// too, films whose kind is of fewer curves.
 WholeSystem whole_system(const case_data::Case& input,
                          const films::FilmSystem& drawn);
 

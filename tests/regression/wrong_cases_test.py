@@ -27,7 +27,7 @@ COARSE = {
     "two_arm_sized": (24, 24), "h_beam_casting": (32, 32),
     "bell_crank": (16, 16),
     "spine_crank": (9, 9),
-    "fuselage": (200, 200),
+    "fuselage": (200, 200), "minimal_cell": (1.5, 1.5),
     "torque_tube": (10, 10), "tapered_cantilever": (24, 6),
 }
 # The mistakes that a case has no room for, and why.
@@ -47,6 +47,7 @@ NO_ROOM = {
     "bell_crank": {"thick": "no walls", "member": "no family"},
     "spine_crank": {"thick": "no walls", "member": "no family"},
     "h_beam_casting": {"member": "no family"},
+    "minimal_cell": {"member": "no family"},
     "ge_bracket": {"thick": "no walls", "member": "no family"},
     "torque_tube": {"crossing": "two rings face each other at any length",
                     "member": "no family"},
@@ -572,6 +573,27 @@ WRONG = {
         Wrong("thick", "walls thicker than the sockets", {}, 3, (UNSOUND,),
               command="run case.toml --set skin=60 "
                       "--set design.skin.bounds=[9,80]"),
+    ],
+    "minimal_cell": [
+        Harmless("the way of a wall's normal",
+                 {"normal = [0, 0, 1]": "normal = [0, 0, -1]"}),
+        Wrong("swapped", "two corners of the rim",
+              swapped('[0, "a / 2", "a"]', '["a / 2", 0, "a"]'), 2,
+              (r"case\.toml:{line}: no body or wall ends in a plane of symmetry: "
+               r".*or at a polygon whose sides lie in planes",),
+              "{ at = [0, 0, 0], normal"),
+        Wrong("open", "a wall that the void lacks",
+              {'"right", "back", "top"]': '"right", "back"]'}, 2,
+              (r"case\.toml:{line}: solid 'top' encloses no body; add it to a "
+               r"body's enclosed_by",), "[solids.top]"),
+        Wrong("crossing", "a wall across the film",
+              {'at = ["a", 0, 0]': 'at = ["a / 2", 0, 0]'}, 2,
+              (r"case\.toml:{line}: curve 'rim' lies on both sides of the wall "
+               r"of 'right'; films lie within the planes on which they slide",),
+              "[solids.right]"),
+        Wrong("thick", "walls thicker than the bends", {}, 3, (UNSOUND,),
+              command="run case.toml --set thickness=12 "
+                      "--set design.thickness.bounds=[0.1,20]"),
     ],
 }
 

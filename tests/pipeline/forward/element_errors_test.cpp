@@ -177,5 +177,25 @@ TEST(ElementErrors, KnowRigidPinsAndEnforcedDisplacements) {
   EXPECT_EQ(errors.responses[4], 0.0);
 }
 
+// Of all fields that have the displacements the part's own has the least.
+TEST(ElementErrors, OfTheEnergyOfEnforcedDisplacementsAreBelowZero) {
+  const auto energy_of = [](int n) {
+    Part p = moved_part(n);
+    p.input.responses = {
+        response("energy", case_data::ResponseKind::StrainEnergy, "", 1)};
+    p.fields.inputs.responses.resize(1);
+    return p;
+  };
+  const Part coarse = energy_of(3);
+  const Part fine = energy_of(7);
+  const auto errors = forward::estimate_element_errors(
+      coarse.input, coarse.fields, values(coarse), *coarse.model);
+  ASSERT_FALSE(errors.failure) << errors.failure->message;
+  const double change = values(fine)[0] - values(coarse)[0];
+  EXPECT_LT(change, 0.0);
+  EXPECT_GT(errors.responses[0] / change, kLeastOfChange);
+  EXPECT_LT(errors.responses[0] / change, 2.0);
+}
+
 }  // namespace
 }  // namespace meniscus::element_errors_test

@@ -70,6 +70,33 @@ TEST(CaseSymmetry, ASolidOfTheCaseInThePlaneIsACutFaceToo) {
               ElementsAre("skin", "foot_pad", "head_pad"));
 }
 
+TEST(CaseSymmetry, EndsOfWallsAreHeldInThePlane) {
+  const std::string wall =
+      "[walls.shell]\nfilms = [\"skin\"]\nthickness = 2\n"
+      "material = \"aluminium\"\n\n[solids.head_pad]";
+  const std::string text =
+      changed(changed(changed(half(), "[solids.head_pad]", wall),
+                      "material = \"aluminium\"\n\n[resolution]",
+                      "material = \"void\"\n\n[resolution]"),
+              "{ on = \"head_pad\", force", "{ on = \"skin/rim:head\", force");
+  const case_data::Case input = case_of(changed(
+      changed(text, "{ on = \"head_pad\", fix = \"xy\" }",
+              "{ on = \"skin/rim:head\", fix = \"xy\" }"),
+      "on = \"head_pad\"\ndirection", "on = \"skin/rim:head\"\ndirection"));
+  EXPECT_THAT(case_data::wall_ends(input, 0), ElementsAre("skin/symmetry_1"));
+  const auto& supports = input.load_cases[0].supports;
+  ASSERT_EQ(supports.size(), 2U);
+  EXPECT_EQ(supports[1].support.surface, "skin/symmetry_1");
+  EXPECT_EQ(supports[1].support.kind, loads::SupportKind::Symmetry);
+  EXPECT_THAT(case_data::cuts_of_whole(input, 0),
+              ElementsAre("part/symmetry_1", "part/symmetry_1/image",
+                          "skin/symmetry_1", "skin/symmetry_1/image"));
+  EXPECT_THAT(
+      problems_of(changed(held_half(), "[solids.head_pad]", wall)).at(0),
+      HasSubstr("walls.shell is of a film that solid 'foot_pad' holds in plane "
+                "1 of symmetry; take 'foot_pad' out"));
+}
+
 TEST(CaseSymmetry, WarnsOfMotionsThatAreNotSymmetric) {
   const auto warnings = reader::read_case_text(half(), "case.toml").warnings;
   ASSERT_EQ(warnings.size(), 1U);

@@ -1,15 +1,19 @@
 // Solids of kind wetted: faces that films wet on walls.
+#include "pipeline/case_data/case_wetted.h"
+
 #include <cmath>
 #include <numbers>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "pipeline/case_data/case_checks.h"
 #include "tests/support/case_text.h"
 
 namespace meniscus::case_wetted_test {
 namespace {
 
+using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
@@ -89,11 +93,99 @@ TEST(CaseWetted, MistakesAreToldWithTheirLines) {
               "inner = \"head\"\n\n[solids.head_pad]"),
       "solid 'foot_pad' is wetted at curve 'base', where skin, plug end; "
       "expected one film there and no other solid");
-  expect_problem(changed(good, "[solids.foot_pad]",
-                         "[walls.shell]\nfilms = [\"skin\"]\nthickness = 2\n"
-                         "material = \"aluminium\"\n\n[solids.foot_pad]"),
-                 "case.toml:28: walls.shell is of a film that slides on the "
-                 "wall of 'foot_pad'");
+}
+
+const std::string kShell =
+    "[walls.shell]\nfilms = [\"skin\"]\nthickness = 2\n"
+    "material = \"aluminium\"\n\n";
+
+TEST(CaseWetted, WallsEndOnPlanesOnly) {
+  const auto with_wall = [](const std::string& text) {
+    return changed(text, "[solids.foot_pad]", kShell + "[solids.foot_pad]");
+  };
+  EXPECT_THAT(case_data::wall_surface_names(case_of(with_wall(sliding()))),
+              ElementsAre("skin/back", "skin/rim:head", "skin/rim:foot_pad"));
+  expect_problem(
+      with_wall(changed(changed(sliding(), "normal = [0, 0, 1]\ncontact",
+                                "wall = \"sphere\"\nradius = 50\ncontact"),
+                        "at = [0, 0, 0]", "at = [0, 0, 43.30127]")),
+      "case.toml:28: walls.shell is of a film that slides on the bent wall of "
+      "'foot_pad'");
+}
+
+/// A film on a triangle in the corner of three planes, of which two are solids
+/// and one is of these lines.
+std::string corner(const std::string& third) {
+  std::string text =
+      changed(changed(changed(strut(),
+                              "kind = \"circle\"\ncenter = [0, 0, 0]\n"
+                              "normal = [0, 0, -1]\nradius = \"foot\"\n",
+                              "kind = \"polygon\"\n"
+                              "points = [[9, 0, 0], [0, 9, 0], [0, 0, 9]]\n"),
+                      "kind = \"branch\"\ncurves = [\"base\", \"head\"]",
+                      "kind = \"disk\"\ncurves = [\"base\"]"),
+              "[solids.foot_pad]\nkind = \"cap\"\ncurve = \"base\"\n\n"
+              "[solids.head_pad]\nkind = \"cap\"\ncurve = \"head\"",
+              "[solids.foot_pad]\nkind = \"wetted\"\ncurve = \"base\"\n"
+              "at = [0, 0, 0]\nnormal = [0, 0, 1]\n\n"
+              "[solids.head_pad]\nkind = \"wetted\"\ncurve = \"base\"\n"
+              "at = [0, 0, 0]\nnormal = [0, 1, 0]\n\n" +
+                  third);
+  text = changed(text, "volume = 9e4", "volume = 300");
+  return changed(changed(text, "force = [\"load\", 0, 0]",
+                         "force = [0, \"load + foot\", 0]"),
+                 "direction = [1, 0, 0]", "direction = [0, 1, 0]");
+}
+
+const std::string kThird =
+    "[solids.side]\nkind = \"wetted\"\ncurve = \"base\"\n"
+    "at = [0, 0, 0]\nnormal = [1, 0, 0]\n\n";
+
+std::string closed_corner(const std::string& third = kThird) {
+  return changed(corner(third), "\"head_pad\"]", "\"head_pad\", \"side\"]");
+}
+
+TEST(CaseWetted, SolidsAtOnePolygonAreTheWallsOfACell) {
+  const case_data::Case input = case_of(closed_corner());
+  EXPECT_TRUE(case_data::is_cell(input, "base"));
+  EXPECT_FALSE(case_data::is_cell(input, "head"));
+  const auto system =
+      case_data::evaluate(input, case_data::initial_design(input)).film_system;
+  EXPECT_TRUE(system.curves[0].free);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const films::FilmWall& wall = *system.caps[k].wall;
+    EXPECT_TRUE(wall.cuts);
+    EXPECT_EQ(wall.tension, 0.0);
+    EXPECT_LT(wall.normal.sum(), 0.0);  // away from the triangle
+    EXPECT_THAT(system.caps[k].curves(), IsEmpty());
+  }
+}
+
+TEST(CaseWetted, PlanesOfSymmetryMayBeWallsOfACell) {
+  const case_data::Case input =
+      case_of(corner("[symmetry]\nplanes = [{ at = [0, 0, 0], "
+                     "normal = [-1, 0, 0] }]\n\n"));
+  EXPECT_TRUE(case_data::is_cell(input, "base"));
+  EXPECT_THAT(input.bodies[0].enclosed_by,
+              ElementsAre("skin", "foot_pad", "head_pad", "part/symmetry_1"));
+}
+
+TEST(CaseWetted, MistakesOfCellsAreToldWithTheirLines) {
+  const std::string good = closed_corner();
+  expect_problem(
+      changed(good, "[0, 9, 0], ", "[0, 9, 0], [0, 6, 2], [2, 3, 6], "),
+      "case.toml:12: side 3 of curve 'base' lies in the plane of "
+      "none of the solids that are wetted there");
+  expect_problem(
+      closed_corner(changed(kThird, "at = [0, 0, 0]", "at = [4, 0, 0]")),
+      "curve 'base' lies on both sides of the wall of 'side'");
+  expect_problem(
+      closed_corner(kThird + "contact_angle = \"80 deg\"\n\n"),
+      "solid 'side' is one of the walls of a cell, at curve 'base'; expected "
+      "planes without holes, met at 90 deg");
+  expect_problem(
+      closed_corner(changed(kThird, "at = [0, 0, 0]", "at = [-4, 0, 0]")),
+      "no side of curve 'base' lies in the plane of 'side'");
 }
 
 /// The strut's foot on a wall of these keys, for the plane's normal.
