@@ -241,16 +241,6 @@ void add_normals(PoleSystem& system, const PatchSides& sides, int side,
 
 }  // namespace
 
-SplineCurve reversed(const SplineCurve& curve) {
-  SplineCurve result = curve;
-  std::reverse(result.poles.begin(), result.poles.end());
-  std::reverse(result.knots.begin(), result.knots.end());
-  for (double& knot : result.knots) {
-    knot = 1.0 - knot;
-  }
-  return result;
-}
-
 FittedPatch fit_patch(const FilmMesh& mesh, const FilmPatch& patch,
                       const PatchSides& sides) {
   FittedPatch fitted;

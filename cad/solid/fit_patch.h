@@ -35,7 +35,4 @@ struct FittedPatch {
 FittedPatch fit_patch(const FilmMesh& mesh, const FilmPatch& patch,
                       const PatchSides& sides);
 
-/// The curve run backwards.
-SplineCurve reversed(const SplineCurve& curve);
-
 }  // namespace meniscus::solid

@@ -1,6 +1,7 @@
 /// The exact shape of a film's rim: lines, arcs and splines end to end.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "cad/solid/brep.h"
@@ -40,6 +41,10 @@ class RimCurve {
   /// How far the tangent turns along a piece [rad].
   double turning(int k) const;
   double wrapped(double s) const;
+  /// The pieces from one place to a later one, which may lie beyond the
+  /// beginning by less than a turn; `ends` receives where each ends.
+  std::vector<RimPiece> between(double from, double to,
+                                std::vector<double>& ends) const;
 
  private:
   std::vector<RimPiece> pieces_;
@@ -49,10 +54,27 @@ class RimCurve {
 Vec3 point_of(const EdgeCurve& curve, double t);
 Vec3 slope_of(const EdgeCurve& curve, double t);
 
-/// A closed spline with two continuous derivatives through `points`, cut where
-/// it turns by more than `sharp` [rad] at a point: more than a twelfth of a
-/// turn, as which the smallest smooth curves are given; between corners next to
-/// each other straight. Throws MeshError for fewer than three points.
-RimCurve rim_through(const Points& points, double sharp = 0.6);
+/// The same run backwards.
+RimPiece reversed(const RimPiece& piece);
+
+inline constexpr double kSharpTurn = 0.6;  // [rad]
+
+/// Pieces through points, and where on them each point lies: the piece and the
+/// share of its parameters.
+struct PointCurve {
+  std::vector<RimPiece> pieces;
+  std::vector<std::pair<int, double>> at;
+};
+
+/// Splines with two continuous derivatives, closed or from the first point to
+/// the last, cut where the points turn by more than `sharp` [rad]: more than a
+/// twelfth of a turn, as which the smallest smooth curves are given. Straight
+/// between corners next to each other and where points lie on a line. Throws
+/// MeshError for a closed curve of fewer than three points.
+PointCurve curve_through(const Points& points, bool closed,
+                         double sharp = kSharpTurn);
+
+/// The closed one.
+RimCurve rim_through(const Points& points, double sharp = kSharpTurn);
 
 }  // namespace meniscus::solid

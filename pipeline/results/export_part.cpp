@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include <fmt/format.h>
+#include "core/geometry/mesh_checks.h"
 
 #include "cad/solid/film_solid.h"
 #include "cad/step/step_writer.h"
@@ -70,18 +71,20 @@ void fe(ExportJob& job, const fs::path& file) {
 }
 
 void wall_step(ExportJob& job, const fs::path& file, bool faceted) {
-  if (!faceted) {
-    throw InvalidInput(
-        "step: walls have no B-spline faces in this version; take "
-        "--format step-faceted, or stl, 3mf, obj");
-  }
   const SettledFilm& film = job.film();
-  step::write_step(file,
-                   solid::faceted_solid(forward::boundary_of(
-                       job.inputs(), film.model, film.state.points)),
+  const SurfaceMesh mesh = forward::boundary_of(
+                       job.inputs(), film.model, film.state.points);
+  const double edge = job.edge().value_or(job.input().resolution.film);
+  solid::FilmSolid made;
+  if (faceted) made.brep = solid::faceted_solid(mesh);
+  else made = solid::film_solid({mesh, {}, {}, {}, edge});
+  const auto& r = made.report;
+  fmt::print(stderr, "patches {} planes {} gap {:.3g} f2s {:.3g} s2f {:.3g} break {:.3g} {} ({:.4g} {:.4g} {:.4g}) edge {}\n", r.patches, r.planes, r.gap, r.film_to_solid, r.solid_to_film, r.tangent_break, r.break_film, r.break_place[0], r.break_place[1], r.break_place[2], edge);
+  const auto s = step::write_step(file, made.brep,
                    {.name = job.input().title,
                     .unit = job.input().units.length,
                     .monitor = job.monitor()});
+  fmt::print(stderr, "volume {} mesh {} tol {}\n", s.volume, enclosed_volume(mesh), s.tolerance);
 }
 
 std::vector<step::MirrorPlane> mirrors_of(
