@@ -71,10 +71,13 @@ std::vector<LineRun> FaceLines::runs(const std::vector<int>& loop) const {
     }
     const int next = loop[(k + 1) % loop.size()];
     const int number = line_at_.at(edge_key(loop[k], next));
-    const std::vector<int>& line = lines_[number].vertices;
-    const auto here = std::find(line.begin(), line.end(), loop[k]);
-    const auto after = here + 1 == line.end() ? line.begin() : here + 1;
-    result.push_back({number, *after == next});
+    const FaceLine& line = lines_[number];
+    const auto here =
+        std::find(line.vertices.begin(), line.vertices.end(), loop[k]) + 1;
+    const bool forward = here != line.vertices.end()
+                             ? *here == next
+                             : line.closed && line.vertices.front() == next;
+    result.push_back({number, forward});
   }
   return result;
 }

@@ -20,19 +20,25 @@ namespace meniscus::solid {
 namespace {
 
 constexpr double kSpanInEdges = 2.0;   // longest knot span
+constexpr double kOffInEdges = 0.02;   // of the film from its faces, if spans
+                                       // can keep it
+constexpr double kMostGap = 1e-5;      // of the diagonal, the same at edges
 constexpr double kMergeInEdges = 0.1;  // corners on a rim that become one
+constexpr double kCorner = 1.0;        // between facets of sharp films [rad]
 constexpr double kPlanar = 1e-6;       // of the diagonal
 
-/// What a plane leaves of its edges: corners of a plane face may be a little
-/// off it.
+/// What a plane leaves of its edges, which may be a little off it.
 void measure_plane(const BrepFace& face, const PlaneSurface& plane,
                    Brep& brep) {
+  constexpr int kSamples = 100;
   for (const std::vector<BrepUse>& loop : face.loops) {
     for (const BrepUse& use : loop) {
       BrepEdge& edge = brep.edges[use.edge];
-      for (const int v : {edge.from, edge.to}) {
-        const Vec3 d = brep.vertices[v] - plane.point;
-        edge.gap = std::max(edge.gap, std::abs(plane.normal.dot(d)));
+      for (int k = 0; k <= kSamples; ++k) {
+        const Vec3 p = point_of(
+            edge.curve, edge.first + (edge.last - edge.first) * k / kSamples);
+        edge.gap =
+            std::max(edge.gap, std::abs(plane.normal.dot(p - plane.point)));
       }
     }
   }
@@ -148,6 +154,7 @@ bool SolidBuilder::add_simple(const std::string& name,
     const bool cone = std::holds_alternative<ConeSurface>(shape->surface);
     (ball ? report_.spheres : cone ? report_.cones : report_.cylinders) += 1;
     std::vector<int> on;
+    on.reserve(loops.size());
     for (const SolidLoop& loop : loops) {
       on.push_back(loop.rim);
     }
@@ -241,14 +248,18 @@ std::vector<RimEdges> SolidBuilder::build_rims(Brep& brep) const {
   return rims;
 }
 
-/// True where a plane face ends at another of its name.
+/// True where a face ends at another of its name.
 bool SolidBuilder::ends_at(int facet, int other, const Edge& edge) const {
   const int label = mesh_.facet_label[facet];
+  if (!is_cap(label)) {
+    return std::count(input_.sharp.begin(), input_.sharp.end(),
+                      mesh_.labels[label]) > 0 &&
+           angle_between(mesh_, facet, other) > kCorner;
+  }
   const auto& creased = input_.creased;
-  return is_cap(label) && (rims_.on_shared_side(edge) ||
-                           (std::count(creased.begin(), creased.end(),
-                                       mesh_.labels[label]) > 0 &&
-                            is_crease(mesh_, facet, other)));
+  return rims_.on_shared_side(edge) ||
+         (std::count(creased.begin(), creased.end(), mesh_.labels[label]) > 0 &&
+          is_crease(mesh_, facet, other));
 }
 
 bool SolidBuilder::is_cap(int label) const {
@@ -262,7 +273,9 @@ FilmSolid SolidBuilder::build() {
     if (!ends_at(f, g, edge)) {
       return false;
     }
-    rims_.add_crease(edge);
+    if (is_cap(mesh_.facet_label[f])) {
+      rims_.add_crease(edge);
+    }
     return true;
   };
   const std::vector<std::vector<int>> parts = connected_parts(mesh_, ends);
@@ -290,9 +303,10 @@ FilmSolid SolidBuilder::build() {
     add_turned_face(film, rims, solid.brep);
     measure_turned(film, report_);
   }
+  const FaceLimits limits{kSpanInEdges * input_.edge, kOffInEdges * input_.edge,
+                          kMostGap * bounding_diagonal(mesh_.points)};
   for (const FilmPiece& film : films_) {
-    const FilmFaces faces =
-        add_faces(film, rims, kSpanInEdges * input_.edge, solid.brep);
+    const FilmFaces faces = add_faces(film, rims, limits, solid.brep);
     report_.patches += static_cast<int>(faces.patches.size());
     measure_film(film, faces, FacetTree(mesh_, film.facets), input_.edge,
                  report_);

@@ -1,12 +1,13 @@
 /// The exact shape of a film's rim: lines, arcs and splines end to end.
 #pragma once
 
-#include <utility>
 #include <vector>
 
 #include "cad/solid/brep.h"
 
 namespace meniscus::solid {
+
+inline constexpr double kSharpTurn = 0.6;  // what is a corner [rad]
 
 struct RimPiece {
   EdgeCurve curve;
@@ -32,8 +33,13 @@ class RimCurve {
   Vec3 tangent(double s) const;  // unit, along growing s
   /// The place nearest to `p`, of points on the curve or near it.
   double nearest(const Vec3& p) const;
-  /// True where the piece and the one before meet with an angle.
+  /// The angle at which the piece and the one before meet [rad].
+  double corner_angle(int k) const;
+  /// True where they meet with an angle.
   bool is_sharp(int k) const;
+  /// Places of the corners, those that count where some turn by more than
+  /// kSharpTurn: these; in order of their angles, the sharpest first.
+  std::vector<double> corners() const;
   /// The sharp corner at s: the number of the piece that begins there, or -1.
   int sharp_corner(double s) const;
   /// Unit, at right angles to both sides of a sharp corner.
@@ -56,25 +62,5 @@ Vec3 slope_of(const EdgeCurve& curve, double t);
 
 /// The same run backwards.
 RimPiece reversed(const RimPiece& piece);
-
-inline constexpr double kSharpTurn = 0.6;  // [rad]
-
-/// Pieces through points, and where on them each point lies: the piece and the
-/// share of its parameters.
-struct PointCurve {
-  std::vector<RimPiece> pieces;
-  std::vector<std::pair<int, double>> at;
-};
-
-/// Splines with two continuous derivatives, closed or from the first point to
-/// the last, cut where the points turn by more than `sharp` [rad]: more than a
-/// twelfth of a turn, as which the smallest smooth curves are given. Straight
-/// between corners next to each other and where points lie on a line. Throws
-/// MeshError for a closed curve of fewer than three points.
-PointCurve curve_through(const Points& points, bool closed,
-                         double sharp = kSharpTurn);
-
-/// The closed one.
-RimCurve rim_through(const Points& points, double sharp = kSharpTurn);
 
 }  // namespace meniscus::solid

@@ -15,8 +15,9 @@ class RimEdges {
   explicit RimEdges(const RimCurve& curve)
       : curve_(&curve), owners_(curve.piece_count()) {}
 
-  /// The piece k is the owner's own piece, run the other way where `reversed`. Before any wish; the owner stays where it is, and is built
-  /// before this rim.
+  /// The piece k is the owner's own piece, run the other way where `reversed`.
+  /// Before any wish; the owner stays where it is, and is built before this
+  /// rim.
   void share(int k, RimEdges& owner, int piece, bool reversed);
   /// Asks for a vertex at place s of the curve.
   void want(double s);

@@ -65,10 +65,9 @@ void SolidRims::add_named(const std::vector<NamedRim>& rims) {
       named.places[v] = curves_[r].nearest(mesh_.points[v]);
       named.order.push_back(v);
     }
-    std::stable_sort(named.order.begin(), named.order.end(),
-                     [&](int v, int w) {
-                       return named.places.at(v) < named.places.at(w);
-                     });
+    std::stable_sort(named.order.begin(), named.order.end(), [&](int v, int w) {
+      return named.places.at(v) < named.places.at(w);
+    });
   }
 }
 
@@ -145,9 +144,9 @@ int SolidRims::named_rim_of(const FaceLine& line) const {
     bool along = true;
     for (std::size_t k = 0; k < v.size() && along; ++k) {
       const std::size_t next = (k + 1) % v.size();
-      along = named_[r].places.count(v[k]) > 0 &&
-              ((next == 0 && !line.closed) ||
-               has_next(named_[r], v[k], v[next]));
+      along =
+          named_[r].places.count(v[k]) > 0 &&
+          ((next == 0 && !line.closed) || has_next(named_[r], v[k], v[next]));
     }
     if (along) {
       return static_cast<int>(r);
@@ -252,11 +251,10 @@ const PointCurve& SolidRims::curve_of(int line) {
     points.push_back(mesh_.points[v]);
   }
   const int named = way.closed ? -1 : named_rim_of(way);
-  return line_curves_[line] =
-             named >= 0 ? named_part(named, way)
-             : ends_at_crease(way)
-                 ? polygon_through(points, way.closed)
-                 : curve_through(points, way.closed);
+  return line_curves_[line] = named >= 0 ? named_part(named, way)
+                              : ends_at_crease(way)
+                                  ? polygon_through(points, way.closed)
+                                  : curve_through(points, way.closed);
 }
 
 SolidLoop SolidRims::loop_of(const std::vector<int>& loop) {
@@ -286,9 +284,8 @@ SolidLoop SolidRims::closed_loop(const std::vector<int>& loop,
       result.places.push_back(named_[result.rim].places.at(v));
       continue;
     }
-    const auto k =
-        std::find(line.vertices.begin(), line.vertices.end(), v) -
-        line.vertices.begin();
+    const auto k = std::find(line.vertices.begin(), line.vertices.end(), v) -
+                   line.vertices.begin();
     const auto& [piece, share] = curve_of(run.line).at[k];
     result.places.push_back(
         curve.start_of(piece) +
@@ -346,8 +343,8 @@ std::vector<RimEdges> SolidRims::edges(const std::set<int>& used) const {
   std::map<std::pair<int, int>, Owner> owned;  // by line and piece
   for (const int r : used) {
     const auto sources = composed_.find(r);
-    for (int k = 0; sources != composed_.end() && k < rims[r].curve().piece_count();
-         ++k) {
+    for (int k = 0;
+         sources != composed_.end() && k < rims[r].curve().piece_count(); ++k) {
       const Source& source = sources->second[k];
       const auto [owner, fresh] = owned.emplace(
           std::pair(source.line, source.piece), Owner{r, k, source.reversed});

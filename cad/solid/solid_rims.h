@@ -7,6 +7,7 @@
 #include <set>
 #include <vector>
 
+#include "cad/solid/curve_through.h"
 #include "cad/solid/face_lines.h"
 #include "cad/solid/film_solid.h"
 #include "cad/solid/rim_edges.h"

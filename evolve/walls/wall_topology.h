@@ -49,6 +49,7 @@ struct WallTopology {
   /// points.
   SurfaceMesh coarse;
   SurfaceMesh fine;
+  std::vector<char> cap;       // per facet of `fine`: of a junction's end
   EdgeMiddles middles;         // of wall points, all levels
   std::vector<char> junction;  // per film vertex: three or more films meet
 };

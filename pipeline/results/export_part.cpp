@@ -4,10 +4,7 @@
 #include <numeric>
 
 #include <fmt/format.h>
-#include "core/geometry/mesh_checks.h"
 
-#include "cad/solid/film_solid.h"
-#include "cad/step/step_writer.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "evolve/datafile/fe_write.h"
@@ -21,10 +18,11 @@
 #include "pipeline/forward/walls.h"
 #include "pipeline/results/calculix_export.h"
 #include "pipeline/results/export_job.h"
-#include "pipeline/results/export_step.h"
 #include "pipeline/results/make_ledger.h"
 #include "pipeline/results/results.h"
 #include "pipeline/results/run_files.h"
+#include "pipeline/step_parts/export_step.h"
+#include "pipeline/step_parts/wall_step.h"
 #include "pipeline/study/ledger.h"
 #include "pipeline/whole/whole_part.h"
 #include "pipeline/whole/whole_system.h"
@@ -72,19 +70,19 @@ void fe(ExportJob& job, const fs::path& file) {
 
 void wall_step(ExportJob& job, const fs::path& file, bool faceted) {
   const SettledFilm& film = job.film();
-  const SurfaceMesh mesh = forward::boundary_of(
-                       job.inputs(), film.model, film.state.points);
-  const double edge = job.edge().value_or(job.input().resolution.film);
-  solid::FilmSolid made;
-  if (faceted) made.brep = solid::faceted_solid(mesh);
-  else made = solid::film_solid({mesh, {}, {}, {}, edge});
-  const auto& r = made.report;
-  fmt::print(stderr, "patches {} planes {} gap {:.3g} f2s {:.3g} s2f {:.3g} break {:.3g} {} ({:.4g} {:.4g} {:.4g}) edge {}\n", r.patches, r.planes, r.gap, r.film_to_solid, r.solid_to_film, r.tangent_break, r.break_film, r.break_place[0], r.break_place[1], r.break_place[2], edge);
-  const auto s = step::write_step(file, made.brep,
-                   {.name = job.input().title,
-                    .unit = job.input().units.length,
-                    .monitor = job.monitor()});
-  fmt::print(stderr, "volume {} mesh {} tol {}\n", s.volume, enclosed_volume(mesh), s.tolerance);
+  std::vector<step_parts::WallBody> bodies;
+  for (const forward::CaseWall& wall : forward::named_walls(
+           job.inputs(),
+           forward::wall_model(job.inputs(), film.model, film.state.points))) {
+    bodies.push_back({wall.name, step_parts::with_ends(wall.wall)});
+  }
+  step_parts::export_walls(
+      file, bodies,
+      {.title = job.input().title,
+       .unit = job.input().units.length,
+       .edge = job.edge().value_or(job.input().resolution.film),
+       .faceted = faceted,
+       .monitor = job.monitor()});
 }
 
 std::vector<step::MirrorPlane> mirrors_of(
@@ -110,13 +108,14 @@ void step(ExportJob& job, const fs::path& file, bool faceted) {
   } else {
     whole = whole::whole_system(job.input(), whole.system);
   }
-  export_step(file, whole.system,
-              {.title = job.input().title,
-               .unit = job.input().units.length,
-               .edge = job.edge().value_or(job.input().resolution.film),
-               .faceted = faceted,
-               .mirrors = mirrors_of(job.input(), whole.mirrors),
-               .monitor = job.monitor()});
+  step_parts::export_step(
+      file, whole.system,
+      {.title = job.input().title,
+       .unit = job.input().units.length,
+       .edge = job.edge().value_or(job.input().resolution.film),
+       .faceted = faceted,
+       .mirrors = mirrors_of(job.input(), whole.mirrors),
+       .monitor = job.monitor()});
 }
 
 void smooth_step(ExportJob& job, const fs::path& file) {

@@ -9,7 +9,7 @@
 #include "core/monitor.h"
 #include "evolve/films/film_system.h"
 
-namespace meniscus::results {
+namespace meniscus::step_parts {
 
 struct StepExport {
   std::string title;        // of the part
@@ -27,4 +27,4 @@ struct StepExport {
 void export_step(const std::filesystem::path& file,
                  const films::FilmSystem& system, const StepExport& options);
 
-}  // namespace meniscus::results
+}  // namespace meniscus::step_parts
