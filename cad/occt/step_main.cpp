@@ -103,7 +103,12 @@ class Answerer {
         path_ = in.get_text();
         const step::StepOptions options{.name = in.get_text(),
                                         .unit = in.get_text()};
-        const StepText written = step_text(path_, step::get_brep(in), options);
+        std::vector<step::StepPart> parts(in.get<std::uint64_t>());
+        for (step::StepPart& part : parts) {
+          part.name = in.get_text();
+          part.brep = step::get_brep(in);
+        }
+        const StepText written = step_text(path_, parts, options);
         step::put_report(out, written.report);
         out.put_text(written.text);
         break;

@@ -294,7 +294,7 @@ std::vector<int> ShapeBuilder::shells_of_faces() const {
     if (both.size() != 2 || both[0].second == both[1].second) {
       throw MeshError(fmt::format(
           "the solid is not closed: edge {} of face '{}' is used {} times; "
-          "where lines of films meet in points export it as step-faceted",
+          "settle it with another --edge, or export it as step-faceted",
           e, both.empty() ? "" : brep_.faces[both[0].first].name, both.size()));
     }
     shells.join(both[0].first, both[1].first);

@@ -1,5 +1,6 @@
 #include "cad/occt/step_text.h"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -105,7 +106,7 @@ std::string ascii(const std::string& text) {
 
 /// Other programs read the file and not the shape: throws MeshError unless it
 /// comes back with as many faces, valid, and of the same volume.
-void check_by_reading(const std::string& text, const StepShape& shape,
+void check_by_reading(const std::string& text, std::size_t written,
                       double volume) {
   STEPControl_Reader reader;
   std::istringstream file(text);
@@ -122,26 +123,49 @@ void check_by_reading(const std::string& text, const StepShape& shape,
     valid = BRepCheck_Analyzer(back).IsValid();
     BRepGProp::VolumeProperties(back, properties, kReadVolumeError);
   }
-  if (!valid || faces != shape.faces.size() ||
+  if (!valid || faces != written ||
       std::abs(properties.Mass() - volume) > kSameVolume * std::abs(volume)) {
     throw MeshError(fmt::format(
         "read again, the file is {} solid of {} faces and {:.6g} mm3 where {} "
         "faces of {:.6g} mm3 were written; export it as step-faceted, or "
         "settle it with another --edge",
-        valid ? "a" : "no valid", faces, properties.Mass(), shape.faces.size(),
-        volume));
+        valid ? "a" : "no valid", faces, properties.Mass(), written, volume));
   }
 }
 
-step::StepReport report_of(const StepShape& shape, const GProp_GProps& solid,
+/// A solid that was found valid, and what it encloses.
+struct CheckedPart {
+  std::string name;
+  StepShape shape;
+  GProp_GProps properties;
+};
+
+CheckedPart checked(const step::StepPart& part, double millimetres) {
+  CheckedPart result{part.name, step_shape(part.brep, millimetres), {}};
+  const std::string fault = fault_of(result.shape);
+  if (!fault.empty()) {
+    throw MeshError(fmt::format("the faces make no valid solid: {}", fault));
+  }
+  BRepGProp::VolumeProperties(result.shape.solid, result.properties,
+                              kVolumeError);
+  return result;
+}
+
+step::StepReport report_of(const std::vector<CheckedPart>& parts,
                            double millimetres) {
   step::StepReport report;
-  report.shells = shape.shells;
-  report.volume = solid.Mass() / std::pow(millimetres, 3);
-  const gp_Pnt center = solid.CentreOfMass();
+  GProp_GProps all;
+  for (const CheckedPart& part : parts) {
+    report.shells += part.shape.shells;
+    all.Add(part.properties);
+    ShapeAnalysis_ShapeTolerance tolerances;
+    report.tolerance =
+        std::max(report.tolerance,
+                 tolerances.Tolerance(part.shape.solid, 1) / millimetres);
+  }
+  report.volume = all.Mass() / std::pow(millimetres, 3);
+  const gp_Pnt center = all.CentreOfMass();
   report.mass_center = Vec3(center.X(), center.Y(), center.Z()) / millimetres;
-  ShapeAnalysis_ShapeTolerance tolerances;
-  report.tolerance = tolerances.Tolerance(shape.solid, 1) / millimetres;
   return report;
 }
 
@@ -160,11 +184,14 @@ void add_part(const Handle(TDocStd_Document) & document, const StepShape& shape,
   }
 }
 
-std::string file_text(const std::filesystem::path& path, const StepShape& shape,
+std::string file_text(const std::filesystem::path& path,
+                      const std::vector<CheckedPart>& parts,
                       const std::string& name, const StepUnit& unit) {
   Handle(TDocStd_Document) document;
   XCAFApp_Application::GetApplication()->NewDocument("MDTV-XCAF", document);
-  add_part(document, shape, name);
+  for (const CheckedPart& part : parts) {
+    add_part(document, part.shape, ascii(part.name));
+  }
   STEPCAFControl_Controller::Init();  // before its settings, and they before
                                       // use
   Interface_Static::SetCVal("write.step.schema", "AP214IS");
@@ -193,29 +220,31 @@ std::string file_text(const std::filesystem::path& path, const StepShape& shape,
 }
 
 StepText checked_text(const std::filesystem::path& path,
-                      const solid::Brep& brep,
+                      const std::vector<step::StepPart>& parts,
                       const step::StepOptions& options) {
   const StepUnit unit = step_unit(options.unit);
   const StepSilence silence;
-  const StepShape shape = step_shape(brep, unit.millimetres);
-  const std::string fault = fault_of(shape);
-  if (!fault.empty()) {
-    throw MeshError(fmt::format("the faces make no valid solid: {}", fault));
+  std::vector<CheckedPart> shapes;
+  std::size_t faces = 0;
+  double volume = 0.0;
+  for (const step::StepPart& part : parts) {
+    shapes.push_back(checked(part, unit.millimetres));
+    faces += shapes.back().shape.faces.size();
+    volume += shapes.back().properties.Mass();
   }
-  GProp_GProps properties;
-  BRepGProp::VolumeProperties(shape.solid, properties, kVolumeError);
-  StepText result{file_text(path, shape, ascii(options.name), unit),
-                  report_of(shape, properties, unit.millimetres)};
-  check_by_reading(result.text, shape, properties.Mass());
+  StepText result{file_text(path, shapes, ascii(options.name), unit),
+                  report_of(shapes, unit.millimetres)};
+  check_by_reading(result.text, faces, volume);
   return result;
 }
 
 }  // namespace
 
-StepText step_text(const std::filesystem::path& path, const solid::Brep& brep,
+StepText step_text(const std::filesystem::path& path,
+                   const std::vector<step::StepPart>& parts,
                    const step::StepOptions& options) {
   try {
-    return checked_text(path, brep, options);
+    return checked_text(path, parts, options);
   } catch (const Standard_Failure& failure) {
     throw MeshError(fmt::format("OpenCASCADE makes no solid of the faces: {}",
                                 failure.DynamicType()->Name()));

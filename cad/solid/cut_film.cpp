@@ -15,7 +15,8 @@ namespace meniscus::solid {
 
 namespace {
 
-constexpr int kTubeSeams = 4;  // of a tube between two rims
+constexpr int kTubeSeams = 4;          // of a tube between two rims
+constexpr double kCornersApart = 4.0;  // of the refined rim's edges
 
 /// Vertices of a loop from `start` on, backwards where asked.
 std::vector<int> turned(std::vector<int> loop, int start, bool backwards) {
@@ -91,38 +92,43 @@ int first_seam(const SplitFilm& split, const Tube& tube) {
       curve_of(tube.bottom).piece_count() >= curve_of(tube.top).piece_count();
   const std::vector<int>& loop = bottom ? tube.bottom : tube.top;
   const RimCurve& curve = curve_of(loop);
-  const double place =
-      curve.piece_count() > 1 ? 0.5 * curve.start_of(1) : curve.start_of(0);
-  const auto off = [&](int v) {
-    const double d = split.film.rim_position[v] - place;
-    return std::abs(d - curve.length() * std::round(d / curve.length()));
-  };
-  return *std::min_element(loop.begin(), loop.end(),
-                           [&](int v, int w) { return off(v) < off(w); });
+  return rim_vertex(
+      split, loop,
+      curve.piece_count() > 1 ? 0.5 * curve.start_of(1) : curve.start_of(0));
+}
+
+/// The vertices at a rim's corners, the sharper one of two that are near each
+/// other.
+std::vector<int> corner_vertices(const SplitFilm& split,
+                                 const std::vector<int>& loop) {
+  const RimCurve& curve = *(*split.rims)[split.film.rim_of[loop.front()]].curve;
+  const double apart =
+      kCornersApart * curve.length() / static_cast<double>(loop.size());
+  std::vector<double> places;
+  for (const double corner : curve.corners()) {
+    if (std::none_of(places.begin(), places.end(), [&](double place) {
+          const double d = corner - place;
+          return std::abs(d - curve.length() * std::round(d / curve.length())) <
+                 apart;
+        })) {
+      places.push_back(corner);
+    }
+  }
+  std::sort(places.begin(), places.end());
+  std::vector<int> vertices;
+  vertices.reserve(places.size());
+  for (const double place : places) {
+    vertices.push_back(rim_vertex(split, loop, place));
+  }
+  return vertices;
 }
 
 /// Where the seams of a tube between two rims lie: at sharp corners, or a
 /// quarter apart from the first rim's beginning.
 std::vector<double> seam_levels(const SplitFilm& split, const Tube& tube) {
-  std::vector<int> corners;
-  for (const std::vector<int>* loop : {&tube.bottom, &tube.top}) {
-    const RimCurve& curve =
-        *(*split.rims)[split.film.rim_of[loop->front()]].curve;
-    for (int p = 0; p < curve.piece_count(); ++p) {
-      if (curve.piece_count() == 1 || !curve.is_sharp(p)) {
-        continue;
-      }
-      corners.push_back(
-          *std::min_element(loop->begin(), loop->end(), [&](int v, int w) {
-            return (split.film.mesh.points[v] - curve.point(curve.start_of(p)))
-                       .norm() <
-                   (split.film.mesh.points[w] - curve.point(curve.start_of(p)))
-                       .norm();
-          }));
-    }
-    if (!corners.empty()) {
-      break;
-    }
+  std::vector<int> corners = corner_vertices(split, tube.bottom);
+  if (corners.empty()) {
+    corners = corner_vertices(split, tube.top);
   }
   if (corners.size() >= 2) {
     return values_at(split, 0, corners);
@@ -318,7 +324,11 @@ CutFilm cut_film(FilmMesh mesh, const std::vector<FilmRim>& rims) {
   std::vector<int> sectors;
   if (rims.size() < 2) {
     split = film_cells(std::move(mesh), rims);
-    sectors.assign(rims.empty() ? kClosedCells : kDiskCells, 1);
+    if (is_four_sided(rims)) {
+      split.film.patches.push_back(whole_patch(split));
+    } else {
+      sectors.assign(rims.empty() ? kClosedCells : kDiskCells, 1);
+    }
   } else {
     Tubes tubes = film_tubes(std::move(mesh), rims);
     sectors = cut_seams(tubes, rims.size() == 2);
@@ -328,6 +338,9 @@ CutFilm cut_film(FilmMesh mesh, const std::vector<FilmRim>& rims) {
     for (int j = 0; j < sectors[k]; ++j) {
       split.film.patches.push_back(patch_of(split, static_cast<int>(k), j));
     }
+  }
+  if (rims.size() < 2) {
+    straighten_nodes(split.film);
   }
   set_bulges(split);
   return std::move(split.film);

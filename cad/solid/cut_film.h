@@ -1,9 +1,9 @@
 /// A film cut into four-sided patches. Two rims: a tube, cut by seams along
 /// its length. More: one tube to each rim, to the line where the harmonic
 /// measures of two rims are alike; those lines meet in threes at nodes, from
-/// each of which a seam runs down each of its tubes. One rim: a square in the
-/// middle and a patch between each of its sides and the rim. None: as a cube's
-/// sides.
+/// each of which a seam runs down each of its tubes. One rim: of four corners
+/// the film as it is, else a square in the middle and a patch between each of
+/// its sides and the rim. None: as a cube's sides.
 #pragma once
 
 #include <array>

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <numeric>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -19,6 +21,10 @@ namespace {
 constexpr double kSquare = 0.45;  // half its side, in a disk of radius 1
 constexpr int kSeams = 4;
 constexpr double kTightTurn = 0.6;  // of an arc that is a corner [rad]
+// Of more than four corners four count that are about as sharp as a
+// rectangle's, where all others are blunter.
+constexpr double kSquareTurn = 1.0;
+constexpr double kBlunter = 0.8;
 constexpr double kEighth = std::numbers::pi / 4.0;
 
 /// Vertices less edges plus facets: 1 for a disk, 2 for a sphere.
@@ -47,12 +53,9 @@ std::vector<double> shares_of(const FilmMesh& mesh,
 
 /// Places on the curve where a seam should end: corners, middles of tight arcs.
 std::vector<double> corner_places(const RimCurve& curve) {
-  std::vector<double> places;
-  for (int k = 0; k < curve.piece_count() && curve.piece_count() > 1; ++k) {
-    if (curve.is_sharp(k)) {
-      places.push_back(curve.start_of(k));
-    }
-    if (curve.turning(k) > kTightTurn) {
+  std::vector<double> places = curve.corners();
+  for (int k = 0; k < curve.piece_count(); ++k) {
+    if (curve.piece_count() > 1 && curve.turning(k) > kTightTurn) {
       places.push_back(0.5 * (curve.start_of(k) + curve.start_of(k + 1)));
     }
   }
@@ -225,7 +228,140 @@ Eigen::MatrixXd cube_measures(const FilmMesh& mesh) {
   return measures;
 }
 
+/// Places of the corners of a four-sided patch's outline; empty for another.
+std::vector<double> four_corners(const RimCurve& curve) {
+  std::vector<double> places = curve.corners();
+  const auto angle = [&](std::size_t k) {
+    return curve.corner_angle(curve.piece_at(places[k]));
+  };
+  if (places.size() < kSeams || angle(kSeams - 1) <= kSharpTurn ||
+      (places.size() > kSeams &&
+       (angle(kSeams - 1) <= kSquareTurn ||
+        angle(kSeams) > kBlunter * angle(kSeams - 1)))) {
+    return {};
+  }
+  places.resize(kSeams);
+  return places;
+}
+
+/// A line from one of its ends on.
+struct LineEnd {
+  std::vector<int>* line = nullptr;
+  bool from_back = false;
+  int at(std::size_t k) const {
+    return from_back ? (*line)[line->size() - 1 - k] : (*line)[k];
+  }
+  /// The first vertex at `distance` from the end; 0: the line is too short.
+  std::size_t beyond(const Points& points, double distance) const {
+    for (std::size_t k = 1; k + 1 < line->size(); ++k) {
+      if ((points[at(k)] - points[at(0)]).norm() >= distance) {
+        return k;
+      }
+    }
+    return 0;
+  }
+};
+
+double mean_edge(const FilmMesh& mesh) {
+  double sum = 0.0;
+  for (const Triangle& t : mesh.facets) {
+    sum += (mesh.points[t[1]] - mesh.points[t[0]]).norm();
+  }
+  return sum / static_cast<double>(mesh.facets.size());
+}
+
 }  // namespace
+
+bool is_four_sided(const std::vector<FilmRim>& rims) {
+  return rims.size() == 1 && !four_corners(*rims[0].curve).empty();
+}
+
+int rim_vertex(const SplitFilm& split, const std::vector<int>& loop,
+               double place) {
+  const RimCurve& curve = *(*split.rims)[split.film.rim_of[loop.front()]].curve;
+  const auto off = [&](int v) {
+    const double d = split.film.rim_position[v] - place;
+    return std::abs(d - curve.length() * std::round(d / curve.length()));
+  };
+  return *std::min_element(loop.begin(), loop.end(),
+                           [&](int v, int w) { return off(v) < off(w); });
+}
+
+FilmPatch whole_patch(const SplitFilm& split) {
+  const std::vector<int> loop = boundary_loops(split.film.mesh.facets).at(0);
+  std::vector<std::ptrdiff_t> at;
+  for (const double place : four_corners(*(*split.rims)[0].curve)) {
+    at.push_back(
+        std::find(loop.begin(), loop.end(), rim_vertex(split, loop, place)) -
+        loop.begin());
+  }
+  std::sort(at.begin(), at.end());
+  if (std::adjacent_find(at.begin(), at.end()) != at.end()) {
+    throw MeshError("a film has corners nearer to each other than its edges");
+  }
+  FilmPatch patch;
+  patch.facets.resize(split.film.mesh.facets.size());
+  std::iota(patch.facets.begin(), patch.facets.end(), 0);
+  patch.rims.fill(0);
+  for (int side = 0; side < 4; ++side) {
+    const auto end = static_cast<std::size_t>(at[(side + 1) % 4]);
+    for (auto k = static_cast<std::size_t>(at[side]); k != end;
+         k = (k + 1) % loop.size()) {
+      patch.chains[side].push_back(loop[k]);
+    }
+    patch.chains[side].push_back(loop[end]);
+    if (side >= 2) {
+      std::reverse(patch.chains[side].begin(), patch.chains[side].end());
+    }
+  }
+  return patch;
+}
+
+void straighten_nodes(CutFilm& film) {
+  Points& points = film.mesh.points;
+  const double near = mean_edge(film.mesh);
+  std::map<int, std::vector<LineEnd>> nodes;
+  for (std::vector<int>& line : film.lines) {
+    for (const bool back : {false, true}) {
+      const int v = back ? line.back() : line.front();
+      if (film.rim_of[v] < 0) {
+        nodes[v].push_back({&line, back});
+      }
+    }
+  }
+  for (const auto& [node, ends] : nodes) {
+    const Vec3& normal = film.mesh.normals[node];
+    Mat3 matrix = normal * normal.transpose();
+    Vec3 right = Vec3::Zero();
+    bool long_enough = true;
+    for (const LineEnd& end : ends) {
+      const std::size_t first = end.beyond(points, near);
+      const std::size_t second = end.beyond(points, 3.0 * near);
+      long_enough = long_enough && first > 0 && second > first;
+      if (long_enough) {
+        const Vec3 p = points[end.at(first)];
+        const Vec3 across =
+            normal.cross(points[end.at(second)] - p).normalized();
+        matrix += across * across.transpose();
+        right += across * across.dot(p - points[node]);
+      }
+    }
+    const Vec3 move = long_enough ? solve_lu(matrix, right) : Vec3::Zero();
+    if (!long_enough || move.norm() > near) {
+      continue;
+    }
+    points[node] += move;
+    for (const LineEnd& end : ends) {
+      const std::size_t count = end.beyond(points, near);
+      const Vec3 way = points[end.at(count)] - points[node];
+      for (std::size_t k = 1; k < count; ++k) {
+        const double share =
+            static_cast<double>(k) / static_cast<double>(count);
+        points[end.at(k)] = points[node] + share * way;
+      }
+    }
+  }
+}
 
 SplitFilm film_cells(FilmMesh mesh, const std::vector<FilmRim>& rims) {
   const int wanted = rims.empty() ? 2 : 1;
@@ -236,6 +372,9 @@ SplitFilm film_cells(FilmMesh mesh, const std::vector<FilmRim>& rims) {
                                 rims.empty() ? "a bubble" : "a disk"));
   }
   SplitFilm split = refined_film(std::move(mesh), rims);
+  if (is_four_sided(rims)) {
+    return split;
+  }
   split_by_greatest(split, rims.empty() ? cube_measures(split.film.mesh)
                                         : disk_measures(split));
   split.sector.assign(split.cell.size(), 0);

@@ -5,9 +5,7 @@
 
 #include <Eigen/Geometry>
 
-#include "cad/solid/direction_classes.h"
-#include "cad/solid/patch_knots.h"
-#include "cad/solid/rim_side.h"
+#include "cad/solid/film_knots.h"
 
 namespace meniscus::solid {
 
@@ -15,29 +13,28 @@ namespace {
 
 constexpr int kNormalRounds = 3;
 constexpr double kSamePlane = 0.9;  // cosine
-
-std::vector<double> turned_knots(const std::vector<double>& knots,
-                                 bool backwards) {
-  return backwards ? reversed(SplineCurve{knots, {}}).knots : knots;
-}
+constexpr int kMostHalvings = 3;
 
 class FaceBuilder {
  public:
   FaceBuilder(const FilmPiece& film, const std::vector<RimEdges>& rims,
-              double span, Brep& brep)
-      : film_(film), rims_(rims), span_(span), brep_(brep) {}
+              const FaceLimits& limits, Brep& brep)
+      : film_(film),
+        on_rims_{film.cut, film.rims, rims},
+        brep_(brep),
+        knots_(on_rims_, limits) {}
 
   FilmFaces build();
 
  private:
   const FilmMesh& mesh() const { return film_.cut.mesh; }
-  double length_of(const std::vector<int>& chain) const;
   std::vector<double> shares_of(const std::vector<int>& chain) const;
-  RimSide rim_side(const FilmPatch& patch, int side) const;
-  void set_knots();
   int vertex_of(int v);
   Vec3 normal_of(int v, bool& free) const;
+  void add_between(const std::vector<int>& chain, CurveFit& fit) const;
   void fit_lines();
+  void add_line_edges();
+  std::vector<FittedPatch> fit_patches() const;
   PatchSides sides_of(const FilmPatch& patch) const;
   void measure_gaps(const FilmPatch& patch, const PatchSides& sides);
   std::vector<BrepUse> outline(const FilmPatch& patch) const;
@@ -46,28 +43,19 @@ class FaceBuilder {
   void average_normals(const std::vector<FittedPatch>& patches);
 
   const FilmPiece& film_;
-  const std::vector<RimEdges>& rims_;
-  double span_;
+  FilmOnRims on_rims_;
   Brep& brep_;
-  std::vector<std::vector<double>> line_knots_;                  // per line
-  std::vector<std::array<std::vector<double>, 2>> patch_knots_;  // along a, b
+  FilmKnots knots_;
   std::map<int, int> nodes_;  // film vertex: brep vertex
   std::vector<int> line_edges_;
+  std::vector<SplineCurve> line_curves_;
   std::vector<SplineCurve> line_normals_;
   std::vector<std::array<bool, 2>> line_free_;  // at their ends
 };
 
-double FaceBuilder::length_of(const std::vector<int>& chain) const {
-  double length = 0.0;
-  for (std::size_t k = 1; k < chain.size(); ++k) {
-    length += (mesh().points[chain[k]] - mesh().points[chain[k - 1]]).norm();
-  }
-  return length;
-}
-
 std::vector<double> FaceBuilder::shares_of(
     const std::vector<int>& chain) const {
-  const double whole = length_of(chain);
+  const double whole = length_of(mesh(), chain);
   std::vector<double> shares{0.0};
   double length = 0.0;
   for (std::size_t k = 1; k < chain.size(); ++k) {
@@ -77,75 +65,10 @@ std::vector<double> FaceBuilder::shares_of(
   return shares;
 }
 
-RimSide FaceBuilder::rim_side(const FilmPatch& patch, int side) const {
-  const int rim = patch.rims[side];
-  const std::vector<int>& chain = patch.chains[side];
-  const std::vector<double>& at = film_.cut.rim_position;
-  RimSide result{&rims_[film_.rims[rim]], at[chain.front()], at[chain.back()]};
-  const double length = result.rim->curve().length();
-  const double step = at[chain[1]] - at[chain[0]];
-  result.growing = step - length * std::round(step / length) > 0.0;
-  return result;
-}
-
-/// Opposite sides of a patch share their knots, and so do patches on the two
-/// sides of a line: a class of directions runs through the film.
-void FaceBuilder::set_knots() {
-  const CutFilm& cut = film_.cut;
-  // Two sides on one line have one knot vector, mirrored if they run against
-  // each other: union of the parameter directions of all patches.
-  DirectionClasses classes(static_cast<int>(cut.patches.size()));
-  std::vector<std::array<int, 2>> user(cut.lines.size(), {-1, -1});
-  for (std::size_t p = 0; p < cut.patches.size(); ++p) {
-    for (int side = 0; side < 4; ++side) {
-      const int line = cut.patches[p].lines[side];
-      if (line >= 0 && user[line][0] < 0) {
-        user[line] = {static_cast<int>(p), side};
-      } else if (line >= 0) {
-        const auto [q, other] = user[line];
-        classes.join(
-            static_cast<int>(p), side, q, other,
-            cut.patches[p].reversed[side] != cut.patches[q].reversed[other]);
-      }
-    }
-  }
-  // What each side of a class asks for: spans by length, breaks of rims.
-  std::map<int, std::vector<SideDemand>> demands;
-  for (std::size_t p = 0; p < cut.patches.size(); ++p) {
-    const FilmPatch& patch = cut.patches[p];
-    for (int side = 0; side < 4; ++side) {
-      const auto [root, flipped] = classes.of(static_cast<int>(p), side);
-      demands[root].push_back(
-          patch.rims[side] >= 0
-              ? demand(rim_side(patch, side), flipped)
-              : SideDemand{.length = length_of(patch.chains[side])});
-    }
-  }
-  // Knots that meet all demands of a class serve all its sides.
-  std::map<int, std::vector<double>> knots;
-  for (const auto& [root, sides] : demands) {
-    knots[root] = common_knots(sides, span_);
-  }
-  // Turned back to the direction of each patch and of each line.
-  line_knots_.resize(cut.lines.size());
-  patch_knots_.resize(cut.patches.size());
-  for (std::size_t p = 0; p < cut.patches.size(); ++p) {
-    const FilmPatch& patch = cut.patches[p];
-    for (int side = 0; side < 4; ++side) {
-      const auto [root, flipped] = classes.of(static_cast<int>(p), side);
-      patch_knots_[p][side % 2] = turned_knots(knots[root], flipped);
-      if (patch.lines[side] >= 0) {
-        line_knots_[patch.lines[side]] =
-            turned_knots(knots[root], flipped != patch.reversed[side]);
-      }
-    }
-  }
-}
-
 int FaceBuilder::vertex_of(int v) {
   const int rim = film_.cut.rim_of[v];
   if (rim >= 0) {
-    return rims_[film_.rims[rim]].vertex(film_.cut.rim_position[v]);
+    return on_rims_.rim(rim).vertex(film_.cut.rim_position[v]);
   }
   const auto found = nodes_.find(v);
   if (found != nodes_.end()) {
@@ -166,7 +89,7 @@ Vec3 FaceBuilder::normal_of(int v, bool& free) const {
   if (rim < 0) {
     return normal;
   }
-  const RimEdges& edges = rims_[film_.rims[rim]];
+  const RimEdges& edges = on_rims_.rim(rim);
   const double place = edges.place(film_.cut.rim_position[v]);
   const int corner = edges.curve().sharp_corner(place);
   if (corner >= 0) {
@@ -179,16 +102,33 @@ Vec3 FaceBuilder::normal_of(int v, bool& free) const {
   return (normal - normal.dot(tangent) * tangent).normalized();
 }
 
+/// Points of the film between a line's vertices, some of which are farther
+/// apart than knots.
+void FaceBuilder::add_between(const std::vector<int>& chain,
+                              CurveFit& fit) const {
+  for (std::size_t k = 1; k < chain.size(); ++k) {
+    for (const double t : {1.0 / 3.0, 2.0 / 3.0}) {
+      fit.at.push_back((1.0 - t) * fit.at[k - 1] + t * fit.at[k]);
+      fit.points.push_back(
+          smooth_edge_point(mesh(), chain[k - 1], chain[k], t));
+    }
+  }
+}
+
 void FaceBuilder::fit_lines() {
   const CutFilm& cut = film_.cut;
+  line_curves_.clear();
+  line_normals_.clear();
+  line_free_.clear();
   for (std::size_t k = 0; k < cut.lines.size(); ++k) {
     const std::vector<int>& chain = cut.lines[k];
     CurveFit fit;
-    fit.knots = line_knots_[k];
+    fit.knots = knots_.of_line(k);
     fit.at = shares_of(chain);
     for (const int v : chain) {
       fit.points.push_back(mesh().points[v]);
     }
+    add_between(chain, fit);
     fit.start = end_of(chain.front());
     fit.end = end_of(chain.back());
     const Vec3 none = Vec3::Zero();
@@ -198,9 +138,8 @@ void FaceBuilder::fit_lines() {
     line_free_.push_back(free);
     fit.start_normal = free[0] ? none : start_normal;
     fit.end_normal = free[1] ? none : end_normal;
-    line_edges_.push_back(static_cast<int>(brep_.edges.size()));
-    brep_.edges.push_back({vertex_of(chain.front()), vertex_of(chain.back()),
-                           fit_curve(fit), 0.0, 1.0});
+    line_curves_.push_back(fit_curve(fit));
+    fit.at = shares_of(chain);
     fit.points.clear();
     for (const int v : chain) {
       fit.points.push_back(mesh().normals[v]);
@@ -212,6 +151,15 @@ void FaceBuilder::fit_lines() {
   }
 }
 
+void FaceBuilder::add_line_edges() {
+  for (std::size_t k = 0; k < line_curves_.size(); ++k) {
+    const std::vector<int>& chain = film_.cut.lines[k];
+    line_edges_.push_back(static_cast<int>(brep_.edges.size()));
+    brep_.edges.push_back({vertex_of(chain.front()), vertex_of(chain.back()),
+                           line_curves_[k], 0.0, 1.0});
+  }
+}
+
 PatchSides FaceBuilder::sides_of(const FilmPatch& patch) const {
   const std::size_t p = &patch - film_.cut.patches.data();
   PatchSides sides;
@@ -219,8 +167,8 @@ PatchSides FaceBuilder::sides_of(const FilmPatch& patch) const {
     const int line = patch.lines[side];
     // On a rim: the exact curve as a spline, vertices at shares of arclength.
     if (line < 0) {
-      const RimSide rim = rim_side(patch, side);
-      sides.curves[side] = fit_rim(rim, patch_knots_[p][side % 2], brep_);
+      const RimSide rim = on_rims_.side(patch, side);
+      sides.curves[side] = fit_rim(rim, knots_.of_patch(p, side % 2), brep_);
       const double start = rim.rim->place(rim.from);
       const double way = rim.rim->way(rim.from, rim.to, rim.growing);
       const double length = rim.rim->curve().length();
@@ -241,8 +189,7 @@ PatchSides FaceBuilder::sides_of(const FilmPatch& patch) const {
     }
     // On a line: the curve fitted once for both patches, and the normals that
     // both are to have there (G1 continuity).
-    const auto& edge = brep_.edges[line_edges_[line]];
-    const auto& curve = std::get<SplineCurve>(edge.curve);
+    const SplineCurve& curve = line_curves_[line];
     const bool back = patch.reversed[side];
     sides.curves[side] = back ? reversed(curve) : curve;
     sides.normals[side] =
@@ -268,7 +215,7 @@ std::vector<BrepUse> FaceBuilder::outline(const FilmPatch& patch) const {
                       on_side(side, back ? 0.0 : 1.0)});
       continue;
     }
-    const RimSide rim = rim_side(patch, side);
+    const RimSide rim = on_rims_.side(patch, side);
     std::vector<RimEdges::Step> steps =
         rim.rim->between(rim.from, rim.to, rim.growing);
     if (!along) {
@@ -290,7 +237,7 @@ void FaceBuilder::measure_gaps(const FilmPatch& patch,
     if (patch.rims[side] < 0) {
       continue;
     }
-    const RimSide rim = rim_side(patch, side);
+    const RimSide rim = on_rims_.side(patch, side);
     for (const RimEdges::Step& step :
          rim.rim->between(rim.from, rim.to, rim.growing)) {
       BrepEdge& edge = brep_.edges[step.edge];
@@ -327,7 +274,7 @@ void FaceBuilder::average_normals(const std::vector<FittedPatch>& patches) {
   }
   for (std::size_t line = 0; line < sums.size(); ++line) {
     CurveFit fit;
-    fit.knots = line_knots_[line];
+    fit.knots = knots_.of_line(line);
     fit.start = line_normals_[line].poles.front();
     fit.end = line_normals_[line].poles.back();
     for (int k = 0; k <= kPerLine; ++k) {
@@ -338,20 +285,33 @@ void FaceBuilder::average_normals(const std::vector<FittedPatch>& patches) {
   }
 }
 
+std::vector<FittedPatch> FaceBuilder::fit_patches() const {
+  std::vector<FittedPatch> patches;
+  for (const FilmPatch& patch : film_.cut.patches) {
+    patches.push_back(fit_patch(mesh(), patch, sides_of(patch)));
+  }
+  return patches;
+}
+
 FilmFaces FaceBuilder::build() {
-  set_knots();
-  fit_lines();
   FilmFaces faces;
-  faces.first_face = static_cast<int>(brep_.faces.size());
-  for (int round = 0; round <= kNormalRounds; ++round) {
-    if (round > 0) {
-      average_normals(faces.patches);
-      faces.patches.clear();
-    }
-    for (const FilmPatch& patch : film_.cut.patches) {
-      faces.patches.push_back(fit_patch(mesh(), patch, sides_of(patch)));
+  for (int round = 0; round <= kMostHalvings; ++round) {
+    fit_lines();
+    faces.patches = fit_patches();
+    if (round == kMostHalvings || !knots_.halve(faces.patches, brep_)) {
+      break;
     }
   }
+  for (int round = 0; round < kNormalRounds; ++round) {
+    average_normals(faces.patches);
+    std::vector<FittedPatch> patches = fit_patches();
+    if (std::any_of(patches.begin(), patches.end(), is_folded)) {
+      break;  // those of the round before stand
+    }
+    faces.patches = std::move(patches);
+  }
+  add_line_edges();
+  faces.first_face = static_cast<int>(brep_.faces.size());
   for (std::size_t p = 0; p < faces.patches.size(); ++p) {
     const FilmPatch& patch = film_.cut.patches[p];
     measure_gaps(patch, sides_of(patch));
@@ -386,8 +346,8 @@ void want_corners(const FilmPiece& film, std::vector<RimEdges>& rims) {
 }
 
 FilmFaces add_faces(const FilmPiece& film, const std::vector<RimEdges>& rims,
-                    double span, Brep& brep) {
-  return FaceBuilder(film, rims, span, brep).build();
+                    const FaceLimits& limits, Brep& brep) {
+  return FaceBuilder(film, rims, limits, brep).build();
 }
 
 }  // namespace meniscus::solid

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cad/solid/cut_film.h"
+#include "cad/solid/film_knots.h"
 #include "cad/solid/fit_patch.h"
 #include "cad/solid/rim_edges.h"
 
@@ -27,10 +28,9 @@ struct FilmFaces {
 /// Asks the rims for vertices at the patches' corners.
 void want_corners(const FilmPiece& film, std::vector<RimEdges>& rims);
 
-/// Adds vertices, edges and faces of the film; the rims are built. `span`:
-/// longest between knots [length].
+/// Adds vertices, edges and faces of the film; the rims are built.
 FilmFaces add_faces(const FilmPiece& film, const std::vector<RimEdges>& rims,
-                    double span, Brep& brep);
+                    const FaceLimits& limits, Brep& brep);
 
 /// The point of the unit square at `share` of side 0 to 3, which run from a to
 /// b, counter-clockwise from the bottom.

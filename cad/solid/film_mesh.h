@@ -32,6 +32,12 @@ Vec3 smooth_point(const FilmMesh& mesh, int facet, const Vec3& at);
 Vec3 smooth_edge_point(const FilmMesh& mesh, int a, int b, double t);
 Vec3 mixed_normal(const FilmMesh& mesh, int a, int b, double t);
 
+/// Per label, the volume between the smooth film and
+/// its flat facets, positive outside of these [length^3]; 0 for the labels that
+/// are `flat` (one char each). Second order in the edge length.
+std::vector<double> bulge_volumes(const SurfaceMesh& mesh,
+                                  const std::vector<char>& flat);
+
 /// Boundary loops of some of the facets: vertices in the facets' direction, so
 /// that the film is on the left. In order of their lowest vertex, which begins
 /// each. Throws MeshError where more than two boundary edges meet.

@@ -20,19 +20,25 @@ namespace meniscus::solid {
 namespace {
 
 constexpr double kSpanInEdges = 2.0;   // longest knot span
+constexpr double kOffInEdges = 0.02;   // of the film from its faces, if spans
+                                       // can keep it
+constexpr double kMostGap = 1e-5;      // of the diagonal, the same at edges
 constexpr double kMergeInEdges = 0.1;  // corners on a rim that become one
+constexpr double kCorner = 1.0;        // between facets of sharp films [rad]
 constexpr double kPlanar = 1e-6;       // of the diagonal
 
-/// What a plane leaves of its edges: corners of a plane face may be a little
-/// off it.
+/// What a plane leaves of its edges, which may be a little off it.
 void measure_plane(const BrepFace& face, const PlaneSurface& plane,
                    Brep& brep) {
+  constexpr int kSamples = 100;
   for (const std::vector<BrepUse>& loop : face.loops) {
     for (const BrepUse& use : loop) {
       BrepEdge& edge = brep.edges[use.edge];
-      for (const int v : {edge.from, edge.to}) {
-        const Vec3 d = brep.vertices[v] - plane.point;
-        edge.gap = std::max(edge.gap, std::abs(plane.normal.dot(d)));
+      for (int k = 0; k <= kSamples; ++k) {
+        const Vec3 p = point_of(
+            edge.curve, edge.first + (edge.last - edge.first) * k / kSamples);
+        edge.gap =
+            std::max(edge.gap, std::abs(plane.normal.dot(p - plane.point)));
       }
     }
   }
@@ -48,8 +54,7 @@ class SolidBuilder {
   struct Cap {
     std::string name;
     std::vector<int> facets;
-    std::vector<std::vector<int>> loops;
-    std::vector<int> rims;  // one per loop
+    std::vector<SolidLoop> loops;
     PlaneSurface plane;
   };
 
@@ -58,7 +63,7 @@ class SolidBuilder {
   void add_film(const std::string& name, const std::vector<int>& facets);
   bool add_simple(const std::string& name, const std::vector<int>& facets,
                   const FilmMesh& mesh, const std::vector<FilmRim>& rims,
-                  const std::vector<int>& solid_rims);
+                  const std::vector<SolidLoop>& loops);
   void add_cap(const std::string& name, const std::vector<int>& facets);
   BrepFace face_of(const Cap& cap, const std::vector<RimEdges>& rims) const;
   std::vector<RimEdges> build_rims(Brep& brep) const;
@@ -95,23 +100,26 @@ void SolidBuilder::add_film(const std::string& name,
   FilmPiece film;
   film.name = name;
   film.facets = facets;
-  // Its boundary loops lie on rims: vertices are projected onto the curves.
+  // Its boundary loops lie on rims' curves.
   std::vector<FilmRim> rims;
-  for (std::vector<int>& loop : boundary_loops(mesh.facets)) {
+  std::vector<SolidLoop> loops;
+  for (const std::vector<int>& loop : boundary_loops(mesh.facets)) {
     std::vector<int> whole;
     whole.reserve(loop.size());
     for (const int v : loop) {
       whole.push_back(global[v]);
     }
-    film.rims.push_back(rims_.rim_of(whole));
-    FilmRim rim{&rims_.curve(film.rims.back()), std::move(loop), {}};
-    for (const int v : whole) {
-      rim.positions.push_back(rim.curve->nearest(mesh_.points[v]));
+    loops.push_back(rims_.loop_of(whole));
+    const SolidLoop& on = loops.back();
+    film.rims.push_back(on.rim);
+    FilmRim rim{&rims_.curve(on.rim), {}, on.places};
+    for (const int v : on.vertices) {
+      rim.loop.push_back(local.at(v));
     }
     rims.push_back(std::move(rim));
   }
   // A plane, cylinder or sphere is exact as one face; else four-sided patches.
-  if (add_simple(name, facets, mesh, rims, film.rims)) {
+  if (add_simple(name, facets, mesh, rims, loops)) {
     return;
   }
   try {
@@ -129,7 +137,7 @@ bool SolidBuilder::add_simple(const std::string& name,
                               const std::vector<int>& facets,
                               const FilmMesh& mesh,
                               const std::vector<FilmRim>& rims,
-                              const std::vector<int>& solid_rims) {
+                              const std::vector<SolidLoop>& loops) {
   const std::optional<SimpleFilm> shape = simple_film(mesh, rims, input_.edge);
   if (!shape) {
     return false;
@@ -139,26 +147,25 @@ bool SolidBuilder::add_simple(const std::string& name,
       std::holds_alternative<SphereSurface>(shape->surface);
   report_.simple.push_back({name, name_of(*shape), has_radius, shape->off});
   if (const auto* plane = std::get_if<PlaneSurface>(&shape->surface)) {
-    std::vector<Triangle> corners;
-    corners.reserve(facets.size());
-    for (const int f : facets) {
-      corners.push_back(mesh_.facets[f]);
-    }
     report_.film_to_solid = std::max(report_.film_to_solid, shape->off);
-    caps_.push_back(
-        {name, facets, boundary_loops(corners), solid_rims, *plane});
+    caps_.push_back({name, facets, loops, *plane});
   } else {
     const bool ball = std::holds_alternative<SphereSurface>(shape->surface);
     const bool cone = std::holds_alternative<ConeSurface>(shape->surface);
     (ball ? report_.spheres : cone ? report_.cones : report_.cylinders) += 1;
-    turned_.push_back({name, *shape, solid_rims, mesh});
+    std::vector<int> on;
+    on.reserve(loops.size());
+    for (const SolidLoop& loop : loops) {
+      on.push_back(loop.rim);
+    }
+    turned_.push_back({name, *shape, std::move(on), mesh});
   }
   return true;
 }
 
 void SolidBuilder::add_cap(const std::string& name,
                            const std::vector<int>& facets) {
-  Cap cap{name, facets, {}, {}, {}};
+  Cap cap{name, facets, {}, {}};
   std::vector<Triangle> corners;
   corners.reserve(facets.size());
   Vec3 normal = Vec3::Zero();
@@ -180,9 +187,8 @@ void SolidBuilder::add_cap(const std::string& name,
     }
   }
   cap.plane = {mesh_.points[corners[0][0]], normal};
-  cap.loops = boundary_loops(corners);
-  for (const std::vector<int>& loop : cap.loops) {
-    cap.rims.push_back(rims_.rim_of(loop));
+  for (const std::vector<int>& loop : boundary_loops(corners)) {
+    cap.loops.push_back(rims_.loop_of(loop));
   }
   caps_.push_back(std::move(cap));
 }
@@ -192,20 +198,16 @@ BrepFace SolidBuilder::face_of(const Cap& cap,
   const Vec3& normal = cap.plane.normal;
   BrepFace face{cap.name, cap.plane, {}};
   std::vector<std::pair<double, std::vector<BrepUse>>> loops;
-  for (std::size_t k = 0; k < cap.loops.size(); ++k) {
-    const std::vector<int>& loop = cap.loops[k];
-    const RimEdges& rim = rims[cap.rims[k]];
-    // From the middle of the first edge: a corner has two tangents.
-    const Vec3& p = mesh_.points[loop[0]];
-    const Vec3 way = mesh_.points[loop[1]] - p;
-    const double here = rim.curve().nearest(p + 0.5 * way);
-    const bool growing = rim.curve().tangent(here).dot(way) > 0.0;
+  for (const SolidLoop& loop : cap.loops) {
+    const std::vector<int>& v = loop.vertices;
+    const Vec3& p = mesh_.points[v[0]];
     Vec3 area = Vec3::Zero();
-    for (std::size_t i = 1; i + 1 < loop.size(); ++i) {
-      area += (mesh_.points[loop[i]] - p).cross(mesh_.points[loop[i + 1]] - p);
+    for (std::size_t i = 1; i + 1 < v.size(); ++i) {
+      area += (mesh_.points[v[i]] - p).cross(mesh_.points[v[i + 1]] - p);
     }
     std::vector<BrepUse> uses;
-    for (const RimEdges::Step& step : rim.between(0.0, 0.0, growing)) {
+    for (const RimEdges::Step& step :
+         rims[loop.rim].between(0.0, 0.0, loop.growing)) {
       uses.push_back({step.edge, step.forward});
     }
     loops.emplace_back(-area.dot(normal), std::move(uses));
@@ -229,7 +231,9 @@ std::vector<RimEdges> SolidBuilder::build_rims(Brep& brep) const {
     used.insert(film.rims.begin(), film.rims.end());
   }
   for (const Cap& cap : caps_) {
-    used.insert(cap.rims.begin(), cap.rims.end());
+    for (const SolidLoop& loop : cap.loops) {
+      used.insert(loop.rim);
+    }
   }
   std::vector<RimEdges> rims = rims_.edges(used);
   for (const FilmPiece& film : films_) {
@@ -244,14 +248,18 @@ std::vector<RimEdges> SolidBuilder::build_rims(Brep& brep) const {
   return rims;
 }
 
-/// True where a plane face ends at another of its name.
+/// True where a face ends at another of its name.
 bool SolidBuilder::ends_at(int facet, int other, const Edge& edge) const {
   const int label = mesh_.facet_label[facet];
+  if (!is_cap(label)) {
+    return std::count(input_.sharp.begin(), input_.sharp.end(),
+                      mesh_.labels[label]) > 0 &&
+           angle_between(mesh_, facet, other) > kCorner;
+  }
   const auto& creased = input_.creased;
-  return is_cap(label) && (rims_.on_shared_side(edge) ||
-                           (std::count(creased.begin(), creased.end(),
-                                       mesh_.labels[label]) > 0 &&
-                            is_crease(mesh_, facet, other)));
+  return rims_.on_shared_side(edge) ||
+         (std::count(creased.begin(), creased.end(), mesh_.labels[label]) > 0 &&
+          is_crease(mesh_, facet, other));
 }
 
 bool SolidBuilder::is_cap(int label) const {
@@ -265,10 +273,14 @@ FilmSolid SolidBuilder::build() {
     if (!ends_at(f, g, edge)) {
       return false;
     }
-    rims_.add_crease(edge);
+    if (is_cap(mesh_.facet_label[f])) {
+      rims_.add_crease(edge);
+    }
     return true;
   };
-  for (const std::vector<int>& part : connected_parts(mesh_, ends)) {
+  const std::vector<std::vector<int>> parts = connected_parts(mesh_, ends);
+  rims_.set_faces(parts);
+  for (const std::vector<int>& part : parts) {
     const int label = mesh_.facet_label[part[0]];
     const std::string& name = mesh_.labels[label];
     if (std::count(input_.exact.begin(), input_.exact.end(), name) > 0) {
@@ -291,9 +303,10 @@ FilmSolid SolidBuilder::build() {
     add_turned_face(film, rims, solid.brep);
     measure_turned(film, report_);
   }
+  const FaceLimits limits{kSpanInEdges * input_.edge, kOffInEdges * input_.edge,
+                          kMostGap * bounding_diagonal(mesh_.points)};
   for (const FilmPiece& film : films_) {
-    const FilmFaces faces =
-        add_faces(film, rims, kSpanInEdges * input_.edge, solid.brep);
+    const FilmFaces faces = add_faces(film, rims, limits, solid.brep);
     report_.patches += static_cast<int>(faces.patches.size());
     measure_film(film, faces, FacetTree(mesh_, film.facets), input_.edge,
                  report_);

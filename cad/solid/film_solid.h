@@ -27,6 +27,8 @@ struct FilmSolidInput {
   double edge = 0.0;               // the film's edge length [length]
   std::vector<std::string> creased = {};  // of these, those that end at creases
                                           // too: several planes
+  std::vector<std::string> sharp = {};    // labels of films that end where
+                                          // facets meet in a corner
 };
 
 /// A film that is a plane, cylinder, cone or sphere (cad/solid/simple_film.h).

@@ -40,6 +40,7 @@ int count_in(const std::vector<int>& some, const std::vector<int>& all) {
 namespace {
 
 constexpr int kMostTries = 60;
+constexpr std::size_t kMostRims = 48;  // tries of more take minutes
 constexpr double kGrow = 1.06;
 constexpr double kLongLine = 0.15;  // of the shorter end: long enough
 constexpr double kShrink = 0.85;    // of a tube's measure, from try to try
@@ -206,6 +207,11 @@ Tubes cut_into_tubes(const SplitFilm& whole) {
 }  // namespace
 
 Tubes film_tubes(FilmMesh mesh, const std::vector<FilmRim>& rims) {
+  if (rims.size() > kMostRims) {
+    throw MeshError(fmt::format(
+        "it has {} rims, and is cut into patches between {} at most",
+        rims.size(), kMostRims));
+  }
   Tubes tubes{refined_film(std::move(mesh), rims), {}, {}};
   if (rims.size() == 2) {
     const std::vector<std::vector<int>> loops = loops_of_rims(tubes.split);

@@ -23,7 +23,8 @@ std::vector<Triangle> corners_of(const FilmMesh& mesh,
 int count_in(const std::vector<int>& some, const std::vector<int>& all);
 
 /// The film refined until its cuts can be smooth, and cut into tubes: one
-/// between two rims, else one to each. Throws MeshError.
+/// between two rims, else one to each. Throws MeshError, also for more than 48
+/// rims.
 Tubes film_tubes(FilmMesh mesh, const std::vector<FilmRim>& rims);
 
 }  // namespace meniscus::solid

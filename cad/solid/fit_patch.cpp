@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/Geometry>
 #include <Eigen/SparseCholesky>
@@ -56,6 +57,7 @@ Eigen::MatrixXd parameters(const FilmMesh& mesh, const FilmPatch& patch,
 struct FilmSample {
   Vec2 at;
   Vec3 point;
+  Vec3 normal;
 };
 
 /// Points of the film over a grid of parameters.
@@ -102,9 +104,13 @@ std::vector<FilmSample> sample_film(const FilmMesh& mesh,
           continue;
         }
         seen = 1;
-        samples.push_back(
-            {{grid_a[i], grid_b[j]},
-             smooth_point(mesh, f, {1.0 - beta - gamma, beta, gamma})});
+        const Vec3 corners(1.0 - beta - gamma, beta, gamma);
+        const Vec3 normal = corners[0] * mesh.normals[t[0]] +
+                            corners[1] * mesh.normals[t[1]] +
+                            corners[2] * mesh.normals[t[2]];
+        samples.push_back({{grid_a[i], grid_b[j]},
+                           smooth_point(mesh, f, corners),
+                           normal.normalized()});
       }
     }
   }
@@ -241,14 +247,10 @@ void add_normals(PoleSystem& system, const PatchSides& sides, int side,
 
 }  // namespace
 
-SplineCurve reversed(const SplineCurve& curve) {
-  SplineCurve result = curve;
-  std::reverse(result.poles.begin(), result.poles.end());
-  std::reverse(result.knots.begin(), result.knots.end());
-  for (double& knot : result.knots) {
-    knot = 1.0 - knot;
-  }
-  return result;
+bool is_folded(const FittedPatch& patch) {
+  return std::any_of(
+      patch.misses.begin(), patch.misses.end(),
+      [](const PatchMiss& miss) { return std::isinf(miss.off); });
 }
 
 FittedPatch fit_patch(const FilmMesh& mesh, const FilmPatch& patch,
@@ -273,9 +275,10 @@ FittedPatch fit_patch(const FilmMesh& mesh, const FilmPatch& patch,
   const Eigen::MatrixXd at = parameters(mesh, patch, sides);
   // Distance to points of the film: rows of tensor product basis values.
   PoleSystem system(surface, rows, columns);
-  for (const FilmSample& sample : sample_film(
-           mesh, patch, at, samples_of(surface.knots_a, kSamplesPerSpan),
-           samples_of(surface.knots_b, kSamplesPerSpan))) {
+  const std::vector<FilmSample> samples =
+      sample_film(mesh, patch, at, samples_of(surface.knots_a, kSamplesPerSpan),
+                  samples_of(surface.knots_b, kSamplesPerSpan));
+  for (const FilmSample& sample : samples) {
     const SplineBasis a = spline_basis(surface.knots_a, sample.at[0]);
     const SplineBasis b = spline_basis(surface.knots_b, sample.at[1]);
     Terms terms;
@@ -297,6 +300,15 @@ FittedPatch fit_patch(const FilmMesh& mesh, const FilmPatch& patch,
   }
   // Normal equations for the inner poles.
   system.solve();
+  for (const FilmSample& sample : samples) {
+    const SurfaceJet jet = jet_of(surface, sample.at);
+    const bool folded = jet.by_a.cross(jet.by_b).dot(sample.normal) <= 0.0;
+    fitted.misses.push_back(
+        {sample.at,
+         folded ? std::numeric_limits<double>::infinity()
+                : std::abs((jet.point - sample.point).dot(sample.normal)),
+         sample.normal});
+  }
   std::vector<char> seen(mesh.points.size(), 0);
   for (const int f : patch.facets) {
     for (const int v : mesh.facets[f]) {

@@ -22,11 +22,22 @@ struct PatchSides {
   std::array<std::vector<double>, 4> at;
 };
 
+/// How far the surface is off a point of the smooth film.
+struct PatchMiss {
+  Vec2 at;
+  double off = 0.0;             // [length]
+  Vec3 normal = Vec3::UnitZ();  // the film's there
+};
+
 struct FittedPatch {
   SplineSurface surface;
   std::vector<int> vertices;  // of the film, in this patch
   std::vector<Vec2> at;       // their parameters (a, b), about
+  std::vector<PatchMiss> misses;
 };
+
+/// True where the surface is seen from behind at a point of the film.
+bool is_folded(const FittedPatch& patch);
 
 /// Parameters are harmonic on the patch with the sides' as given; poles are
 /// the least-squares ones over points of the smooth film, the sides' exactly
@@ -34,8 +45,5 @@ struct FittedPatch {
 /// poles allow, so that patches that share a side meet without a crease.
 FittedPatch fit_patch(const FilmMesh& mesh, const FilmPatch& patch,
                       const PatchSides& sides);
-
-/// The curve run backwards.
-SplineCurve reversed(const SplineCurve& curve);
 
 }  // namespace meniscus::solid

@@ -1,6 +1,7 @@
 #include "cad/solid/mesh_parts.h"
 
 #include <algorithm>
+#include <cmath>
 #include <deque>
 #include <map>
 
@@ -61,10 +62,14 @@ std::vector<std::vector<int>> connected_parts(
   return parts;
 }
 
-bool is_crease(const SurfaceMesh& mesh, int facet, int other) {
+double angle_between(const SurfaceMesh& mesh, int facet, int other) {
   const Vec3 a = area_vector2(mesh, facet);
   const Vec3 b = area_vector2(mesh, other);
-  return a.cross(b).norm() > kCrease * a.norm() * b.norm() || a.dot(b) < 0.0;
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+bool is_crease(const SurfaceMesh& mesh, int facet, int other) {
+  return angle_between(mesh, facet, other) > kCrease;
 }
 
 }  // namespace meniscus::solid

@@ -15,6 +15,9 @@ std::vector<std::vector<int>> connected_parts(
     const SurfaceMesh& mesh,
     const std::function<bool(int facet, int other, const Edge& edge)>& ends);
 
+/// The angle at which two facets meet, 0 in one plane [rad].
+double angle_between(const SurfaceMesh& mesh, int facet, int other);
+
 /// True where two facets lie in different planes.
 bool is_crease(const SurfaceMesh& mesh, int facet, int other);
 

@@ -149,14 +149,35 @@ double RimCurve::nearest(const Vec3& p) const {
   return wrapped(best);
 }
 
-bool RimCurve::is_sharp(int k) const {
+double RimCurve::corner_angle(int k) const {
   const RimPiece& before = pieces_[(k + piece_count() - 1) % piece_count()];
   return angle_between(slope_of(before.curve, before.last),
-                       slope_of(pieces_[k].curve, pieces_[k].first)) > kSharp;
+                       slope_of(pieces_[k].curve, pieces_[k].first));
+}
+
+bool RimCurve::is_sharp(int k) const { return corner_angle(k) > kSharp; }
+
+std::vector<double> RimCurve::corners() const {
+  std::vector<std::pair<double, double>> found;  // angle, place
+  for (int k = 0; k < piece_count(); ++k) {
+    if (is_sharp(k)) {
+      found.emplace_back(corner_angle(k), start_of(k));
+    }
+  }
+  std::stable_sort(
+      found.begin(), found.end(),
+      [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<double> places;
+  for (const auto& [angle, place] : found) {
+    if (angle > kSharpTurn || found.front().first <= kSharpTurn) {
+      places.push_back(place);
+    }
+  }
+  return places;
 }
 
 int RimCurve::sharp_corner(double s) const {
-  for (int k = 0; k < piece_count() && piece_count() > 1; ++k) {
+  for (int k = 0; k < piece_count(); ++k) {
     const double d = s - starts_[k];
     if (is_sharp(k) && std::abs(d - length() * std::round(d / length())) <
                            kSamePlace * length()) {
@@ -186,65 +207,37 @@ double RimCurve::turning(int k) const {
   return angle;
 }
 
-RimCurve rim_through(const Points& points, double sharp) {
-  const int n = static_cast<int>(points.size());
-  if (n < 3) {
-    throw MeshError("a rim has fewer than three points");
+std::vector<RimPiece> RimCurve::between(double from, double to,
+                                        std::vector<double>& ends) const {
+  std::vector<RimPiece> result;
+  ends.clear();
+  const double least = kSamePlace * length();
+  for (double s = from; to - s > least;) {
+    const int k = piece_at(s + 0.5 * least);
+    const double turn = length() * std::floor((s + 0.5 * least) / length());
+    double end = std::min(to, turn + starts_[k + 1]);
+    end = to - end < least ? to : end;
+    RimPiece part = pieces_[k];
+    part.first = parameter_at(k, std::max(s - turn, starts_[k]));
+    part.last = parameter_at(k, std::min(end - turn, starts_[k + 1]));
+    result.push_back(std::move(part));
+    ends.push_back(end);
+    s = end;
   }
-  // Corners of the polygon: where it turns by more than `sharp`.
-  std::vector<int> corners;
-  for (int i = 0; i < n; ++i) {
-    const Vec3 in = points[i] - points[(i + n - 1) % n];
-    const Vec3 out = points[(i + 1) % n] - points[i];
-    if (angle_between(in, out) > sharp) {
-      corners.push_back(i);
-    }
+  return result;
+}
+
+RimPiece reversed(const RimPiece& piece) {
+  if (const auto* line = std::get_if<StraightLine>(&piece.curve)) {
+    return {StraightLine{line->start, -line->direction}, -piece.last,
+            -piece.first};
   }
-  const bool smooth = corners.empty();
-  if (smooth) {
-    corners.push_back(0);
+  if (const auto* arc = std::get_if<EllipseCurve>(&piece.curve)) {
+    return {EllipseCurve{arc->center, arc->u, -arc->v}, -piece.last,
+            -piece.first};
   }
-  // One cubic spline from corner to corner.
-  std::vector<RimPiece> pieces;
-  for (std::size_t c = 0; c < corners.size(); ++c) {
-    const int first = corners[c];
-    int count = (corners[(c + 1) % corners.size()] - first + n) % n;
-    count = count == 0 ? n : count;
-    // Between two corners next to each other nothing says how it bends.
-    if (count == 1) {
-      const Vec3 way = points[(first + 1) % n] - points[first];
-      pieces.push_back(
-          {StraightLine{points[first], way.normalized()}, 0.0, way.norm()});
-      continue;
-    }
-    CurveFit fit;
-    // A smooth closed curve runs on past its start, so that it has no corner.
-    const int beyond = smooth ? std::min(4, n / 2) : 0;
-    std::vector<double> chord{0.0};
-    for (int i = -beyond; i <= count + beyond; ++i) {
-      fit.points.push_back(points[((first + i) % n + n) % n]);
-      if (fit.points.size() > 1) {
-        chord.push_back(chord.back() +
-                        (fit.points.back() - fit.points.end()[-2]).norm());
-      }
-    }
-    // Parameters by chord length (Piegl, Tiller, The NURBS Book, 9.2.1), and a
-    // knot at each inner point.
-    std::vector<SplineBreak> inner;
-    for (std::size_t i = 0; i < chord.size(); ++i) {
-      fit.at.push_back(chord[i] / chord.back());
-      if (i > 0 && i + 1 < chord.size()) {
-        inner.push_back({fit.at[i], 1});
-      }
-    }
-    fit.knots = clamped_knots(inner);
-    fit.start = fit.points.front();
-    fit.end = fit.points.back();
-    // Of a smooth curve only one turn of what was fitted is used.
-    pieces.push_back(
-        {fit_curve(fit), fit.at[beyond], fit.at[fit.at.size() - 1 - beyond]});
-  }
-  return RimCurve(std::move(pieces));
+  return {reversed(std::get<SplineCurve>(piece.curve)), 1.0 - piece.last,
+          1.0 - piece.first};
 }
 
 }  // namespace meniscus::solid

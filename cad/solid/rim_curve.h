@@ -7,6 +7,8 @@
 
 namespace meniscus::solid {
 
+inline constexpr double kSharpTurn = 0.6;  // what is a corner [rad]
+
 struct RimPiece {
   EdgeCurve curve;
   double first = 0.0;  // the curve's parameter where the piece begins
@@ -31,8 +33,13 @@ class RimCurve {
   Vec3 tangent(double s) const;  // unit, along growing s
   /// The place nearest to `p`, of points on the curve or near it.
   double nearest(const Vec3& p) const;
-  /// True where the piece and the one before meet with an angle.
+  /// The angle at which the piece and the one before meet [rad].
+  double corner_angle(int k) const;
+  /// True where they meet with an angle.
   bool is_sharp(int k) const;
+  /// Places of the corners, those that count where some turn by more than
+  /// kSharpTurn: these; in order of their angles, the sharpest first.
+  std::vector<double> corners() const;
   /// The sharp corner at s: the number of the piece that begins there, or -1.
   int sharp_corner(double s) const;
   /// Unit, at right angles to both sides of a sharp corner.
@@ -40,6 +47,10 @@ class RimCurve {
   /// How far the tangent turns along a piece [rad].
   double turning(int k) const;
   double wrapped(double s) const;
+  /// The pieces from one place to a later one, which may lie beyond the
+  /// beginning by less than a turn; `ends` receives where each ends.
+  std::vector<RimPiece> between(double from, double to,
+                                std::vector<double>& ends) const;
 
  private:
   std::vector<RimPiece> pieces_;
@@ -49,10 +60,7 @@ class RimCurve {
 Vec3 point_of(const EdgeCurve& curve, double t);
 Vec3 slope_of(const EdgeCurve& curve, double t);
 
-/// A closed spline with two continuous derivatives through `points`, cut where
-/// it turns by more than `sharp` [rad] at a point: more than a twelfth of a
-/// turn, as which the smallest smooth curves are given; between corners next to
-/// each other straight. Throws MeshError for fewer than three points.
-RimCurve rim_through(const Points& points, double sharp = 0.6);
+/// The same run backwards.
+RimPiece reversed(const RimPiece& piece);
 
 }  // namespace meniscus::solid

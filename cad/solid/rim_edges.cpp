@@ -15,7 +15,7 @@ double apart(double s, double t, double length) {
 }
 
 /// The place on piece j of `to` that place s of piece k of `from` is: both
-/// pieces are one straight line.
+/// pieces are one, and places run in proportion to its parameter.
 double moved(const RimCurve& from, int k, double s, const RimCurve& to, int j,
              bool reversed) {
   const double share =

@@ -1,6 +1,6 @@
 /// A rim as edges of a solid, cut where faces on either side have corners. Rims
-/// of plane faces may share sides: a piece of one is a piece of another, and
-/// the edges there are the same.
+/// of several lines share pieces: a piece of one is a piece of another, and the
+/// edges there are the same.
 #pragma once
 
 #include <vector>
@@ -15,9 +15,9 @@ class RimEdges {
   explicit RimEdges(const RimCurve& curve)
       : curve_(&curve), owners_(curve.piece_count()) {}
 
-  /// The straight piece k is the owner's own piece, run the other way where
-  /// `reversed`. Before any wish; the owner stays where it is, and is built
-  /// before this rim.
+  /// The piece k is the owner's own piece, run the other way where `reversed`.
+  /// Before any wish; the owner stays where it is, and is built before this
+  /// rim.
   void share(int k, RimEdges& owner, int piece, bool reversed);
   /// Asks for a vertex at place s of the curve.
   void want(double s);

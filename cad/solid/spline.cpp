@@ -157,4 +157,14 @@ SplineCurve fit_curve(const CurveFit& fit) {
   return curve;
 }
 
+SplineCurve reversed(const SplineCurve& curve) {
+  SplineCurve result = curve;
+  std::reverse(result.poles.begin(), result.poles.end());
+  std::reverse(result.knots.begin(), result.knots.end());
+  for (double& knot : result.knots) {
+    knot = 1.0 - knot;
+  }
+  return result;
+}
+
 }  // namespace meniscus::solid

@@ -32,6 +32,8 @@ std::vector<double> clamped_knots(const std::vector<SplineBreak>& inner);
 
 Vec3 point_of(const SplineCurve& curve, double t);
 Vec3 slope_of(const SplineCurve& curve, double t);
+/// Run backwards: at 1 - t.
+SplineCurve reversed(const SplineCurve& curve);
 
 struct SurfaceJet {
   Vec3 point;

@@ -19,7 +19,8 @@ enum class StepQuestion : std::int32_t {
   Loop,   // names' number, names: a loop of the open file
   Rim,    // face: the same
   Solid,  // path, unit: a text (exact_shape_text)
-  Write   // path, name, unit, Brep: a report, the file's text
+  Write   // path, name, unit, parts' number, name and Brep of each: a report,
+          // the file's text
 };
 
 /// First in an answer; behind any but Done a message.

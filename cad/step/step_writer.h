@@ -1,5 +1,5 @@
-/// STEP out: a solid of planes, cylinders, spheres and B-spline faces with
-/// names (AP214).
+/// STEP out: solids of planes, cylinders, spheres and B-spline faces with names
+/// (AP214).
 #pragma once
 
 #include <filesystem>
@@ -17,12 +17,18 @@ struct StepOptions {
   Monitor* monitor = nullptr;  // asked every 50 ms whether to stop
 };
 
-/// What OpenCASCADE found of the solid that was written, in the solid's unit.
+struct StepPart {
+  std::string name;
+  solid::Brep brep;
+};
+
+/// What OpenCASCADE found of the solids that were written, together, in their
+/// unit.
 struct StepReport {
   int shells = 0;
   double volume = 0.0;
   Vec3 mass_center = Vec3::Zero();
-  double tolerance = 0.0;  // the largest of its edges and vertices
+  double tolerance = 0.0;  // the largest of edges and vertices
 };
 
 /// Writes the closed solid; the same bits for the same input (the header's time
@@ -32,5 +38,10 @@ struct StepReport {
 /// helper, cad/step/step_child.h), Interrupted, which leaves what was there.
 StepReport write_step(const std::filesystem::path& path,
                       const solid::Brep& brep, const StepOptions& options = {});
+
+/// The same of several solids, each a part of its own name.
+StepReport write_step(const std::filesystem::path& path,
+                      const std::vector<StepPart>& parts,
+                      const StepOptions& options);
 
 }  // namespace meniscus::step

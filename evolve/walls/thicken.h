@@ -80,9 +80,12 @@ struct ThickWall {
   /// by their lowest vertex.
   SurfaceMesh surface;
   std::vector<WallTrace> trace;  // per point of surface
-  double volume = 0.0;           // of the wall [length^3]
-  MeasuredThickness thinnest;    // relative to what was asked; samples are
-  MeasuredThickness thickest;    // vertices, edge midpoints, facet centres
+  /// Per facet 1 where it closes the end of a line where films meet; empty: no
+  /// films meet.
+  std::vector<char> cap;
+  double volume = 0.0;         // of the wall [length^3]
+  MeasuredThickness thinnest;  // relative to what was asked; samples are
+  MeasuredThickness thickest;  // vertices, edge midpoints, facet centres
   SafeThickness safe;
   int corrections = 0;
   /// What check_surface finds; empty when the wall can be meshed. A thickness

@@ -466,6 +466,7 @@ void WallModel::report() {
       }
       wall.surface.facets.push_back(t);
       wall.surface.facet_label.push_back(all.facet_label[f]);
+      wall.cap.push_back(topology_.cap[f]);
     }
     wall.volume = enclosed_volume(wall.surface);
     wall.thinnest = reference_.thinnest[r];

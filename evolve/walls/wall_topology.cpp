@@ -41,6 +41,10 @@ class Builder {
       refine();
     }
     result_.fine = films_.levels > 0 ? surface() : result_.coarse;
+    result_.cap.assign(2 * result_.facets.size(), 0);
+    for (const RimFacet& facet : rim_facets_) {
+      result_.cap.push_back(facet.cap ? 1 : 0);
+    }
     find_junctions();
     return std::move(result_);
   }

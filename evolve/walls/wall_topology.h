@@ -52,6 +52,7 @@ struct WallTopology {
   /// coordinates; corners are wall points.
   SurfaceMesh coarse;
   SurfaceMesh fine;
+  std::vector<char> cap;       // per facet of `fine`: of a junction's end
   EdgeMiddles middles;         // of wall points, all levels
   std::vector<char> junction;  // per film vertex: it is on a junction's line
 };

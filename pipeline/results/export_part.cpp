@@ -5,8 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "cad/solid/film_solid.h"
-#include "cad/step/step_writer.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "evolve/datafile/fe_write.h"
@@ -20,10 +18,11 @@
 #include "pipeline/forward/walls.h"
 #include "pipeline/results/calculix_export.h"
 #include "pipeline/results/export_job.h"
-#include "pipeline/results/export_step.h"
 #include "pipeline/results/make_ledger.h"
 #include "pipeline/results/results.h"
 #include "pipeline/results/run_files.h"
+#include "pipeline/step_parts/export_step.h"
+#include "pipeline/step_parts/wall_step.h"
 #include "pipeline/study/ledger.h"
 #include "pipeline/whole/whole_part.h"
 #include "pipeline/whole/whole_system.h"
@@ -69,21 +68,6 @@ void fe(ExportJob& job, const fs::path& file) {
   write_file(file, datafile::fe_text(complex, comments));
 }
 
-void wall_step(ExportJob& job, const fs::path& file, bool faceted) {
-  if (!faceted) {
-    throw InvalidInput(
-        "step: walls have no B-spline faces in this version; take "
-        "--format step-faceted, or stl, 3mf, obj");
-  }
-  const SettledFilm& film = job.film();
-  step::write_step(file,
-                   solid::faceted_solid(forward::boundary_of(
-                       job.inputs(), film.model, film.state.points)),
-                   {.name = job.input().title,
-                    .unit = job.input().units.length,
-                    .monitor = job.monitor()});
-}
-
 std::vector<step::MirrorPlane> mirrors_of(
     const case_data::Case& input, const std::vector<std::size_t>& planes) {
   std::vector<step::MirrorPlane> mirrors;
@@ -93,6 +77,33 @@ std::vector<step::MirrorPlane> mirrors_of(
         {plane.at, plane.normal, case_data::cuts_of_whole(input, p)});
   }
   return mirrors;
+}
+
+void wall_step(ExportJob& job, const fs::path& file, bool faceted) {
+  const SettledFilm& film = job.film();
+  std::vector<step_parts::WallBody> bodies;
+  for (const forward::CaseWall& wall : forward::named_walls(
+           job.inputs(),
+           forward::wall_model(job.inputs(), film.model, film.state.points))) {
+    bodies.push_back({wall.name, step_parts::with_ends(wall.wall)});
+  }
+  std::vector<std::size_t> planes(job.input().symmetry.size());
+  std::iota(planes.begin(), planes.end(), 0);
+  std::vector<step::MirrorPlane> mirrors = mirrors_of(job.input(), planes);
+  for (step::MirrorPlane& mirror : mirrors) {  // lines end there as well
+    const std::vector<std::string> cuts = mirror.cuts;
+    for (const std::string& face : cuts) {
+      mirror.cuts.push_back(face + step_parts::kLineEnd);
+    }
+  }
+  step_parts::export_walls(
+      file, bodies,
+      {.title = job.input().title,
+       .unit = job.input().units.length,
+       .edge = job.edge().value_or(job.input().resolution.film),
+       .faceted = faceted,
+       .mirrors = std::move(mirrors),
+       .monitor = job.monitor()});
 }
 
 void step(ExportJob& job, const fs::path& file, bool faceted) {
@@ -107,13 +118,14 @@ void step(ExportJob& job, const fs::path& file, bool faceted) {
   } else {
     whole = whole::whole_system(job.input(), whole.system);
   }
-  export_step(file, whole.system,
-              {.title = job.input().title,
-               .unit = job.input().units.length,
-               .edge = job.edge().value_or(job.input().resolution.film),
-               .faceted = faceted,
-               .mirrors = mirrors_of(job.input(), whole.mirrors),
-               .monitor = job.monitor()});
+  step_parts::export_step(
+      file, whole.system,
+      {.title = job.input().title,
+       .unit = job.input().units.length,
+       .edge = job.edge().value_or(job.input().resolution.film),
+       .faceted = faceted,
+       .mirrors = mirrors_of(job.input(), whole.mirrors),
+       .monitor = job.monitor()});
 }
 
 void smooth_step(ExportJob& job, const fs::path& file) {

@@ -336,6 +336,14 @@ kind = "strain_energy"
                                        delta=room, msg=response)
             self.assertLess(max(p[0] for p in self.nodes_of(f"half_{free}")),
                             1e-12)
+            # One closed solid of both halves.
+            told = self.call("export", self.folder / f"half_{free}", "--format",
+                             "step")
+            self.expect(told, 0)
+            solid = re.search(r"valid closed solid of ([\d.]+) mm3",
+                              told.stdout + told.stderr)
+            self.assertAlmostEqual(float(solid[1]) * 7.85e-9 /
+                                   part["responses"]["mass"], 1, delta=4e-3)
             self.expect(self.call("check-gradient", self.folder /
                                   f"half_{free}.toml"), 0)
 

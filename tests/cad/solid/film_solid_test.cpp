@@ -1,5 +1,6 @@
 #include "cad/solid/film_solid.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -128,15 +129,48 @@ TEST(FilmSolid, DomeBecomesFivePatches) {
   EXPECT_GT(coarse / fine, 5.0);  // facets: 4; their smooth points: 8
 }
 
-TEST(FilmSolid, SeamsOfADomeEndInItsRimsCorners) {
+TEST(FilmSolid, FilmInARimOfFourCornersIsOneFace) {
   const FilmPart part = square_dome(6, 8.0);
   const solid::FilmSolid solid = solid_of(part);
-  EXPECT_EQ(solid.report.patches, 5);
+  EXPECT_EQ(solid.report.patches, 1);
   expect_closed(solid.brep);
-  // No vertices on the rim but the four corners.
-  EXPECT_EQ(solid.brep.vertices.size(), 8);
+  EXPECT_EQ(solid.brep.vertices.size(), 4);
   EXPECT_LT(solid.report.film_to_solid, 0.1 * part.edge);
+  EXPECT_LT(solid.report.solid_to_film, 0.1 * part.edge);
+}
+
+/// An ellipsoid cut into films like an orange, whose lines meet in its poles.
+TEST(FilmSolid, FilmsWhoseLinesMeetInPointsShareThem) {
+  const Vec3 half(14.0, 10.0, 18.0);
+  const Vec3 middle(3, 2, 1);
+  FilmPart part = ellipsoid(12, half);
+  part.mesh.labels = {"one", "two", "three"};
+  for (std::size_t f = 0; f < part.mesh.facets.size(); ++f) {
+    Vec3 at = -middle;
+    for (const int v : part.mesh.facets[f]) {
+      at += part.mesh.points[v] / 3.0;
+    }
+    at = at.cwiseQuotient(half);
+    const double angle = std::atan2(at[1], at[0]);
+    part.mesh.facet_label[f] = static_cast<int>(
+        3.0 * (angle < 0.0 ? angle + kFullTurn : angle) / kFullTurn);
+  }
+  const solid::FilmSolid solid = solid_of(part);
+  expect_closed(solid.brep);
+  const auto is_pole = [&](const Vec3& p) {
+    return (p - middle).head<2>().norm() < 1e-9;
+  };
+  EXPECT_EQ(std::count_if(solid.brep.vertices.begin(),
+                          solid.brep.vertices.end(), is_pole),
+            2);
+  EXPECT_LT(solid.report.gap, 1e-3);
   EXPECT_LT(solid.report.tangent_break, 1.0);
+  EXPECT_LT(farthest(solid.brep,
+                     [&](const Vec3& p) {
+                       return ((p - middle).cwiseQuotient(half).norm() - 1.0) *
+                              half.mean();
+                     }),
+            0.05 * part.edge);
 }
 
 TEST(FilmSolid, ClosedFilmBecomesACubesSides) {

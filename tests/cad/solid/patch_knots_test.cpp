@@ -26,7 +26,7 @@ solid::SideDemand first_two(const solid::RimCurve& curve,
                             solid::RimEdges& edges, solid::Brep& brep) {
   edges.build(1e-9, brep);
   const double end = curve.start_of(2);
-  return {.length = end, .rim = &edges, .from = 0.0, .to = end};
+  return {.length = end, .rim = {&edges, 0.0, end}};
 }
 
 int multiplicity_near(const std::vector<double>& knots, double at) {

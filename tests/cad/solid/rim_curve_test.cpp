@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "cad/solid/curve_through.h"
 #include "cad/solid/rim_edges.h"
 
 namespace meniscus::rim_curve_test {
@@ -164,6 +165,55 @@ TEST(RimEdges, RimsThatShareASideHaveItsEdgesInCommon) {
     EXPECT_EQ(there[k].edge, back[1 - k].edge);
     EXPECT_NE(there[k].forward, back[1 - k].forward);
     EXPECT_NEAR(there[k].first, 1.0 - back[1 - k].first, 1e-12);
+  }
+}
+
+// Parts of curves and their pieces run backwards are the curves' own points.
+TEST(RimCurve, PartsAreTheSameCurve) {
+  const solid::RimCurve curve = stadium();
+  const double from = 0.8 * curve.length();
+  const double to = 1.3 * curve.length();  // across the beginning
+  std::vector<double> ends;
+  const std::vector<solid::RimPiece> parts = curve.between(from, to, ends);
+  ASSERT_EQ(parts.size(), ends.size());
+  EXPECT_DOUBLE_EQ(ends.back(), to);
+  double start = from;
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    const solid::RimPiece back = solid::reversed(parts[k]);
+    for (const double share : {0.0, 0.3, 1.0}) {
+      const auto at = [&](const solid::RimPiece& piece, double t) {
+        return solid::point_of(piece.curve,
+                               piece.first + t * (piece.last - piece.first));
+      };
+      const Vec3 exact = curve.point(start + share * (ends[k] - start));
+      EXPECT_LT((at(parts[k], share) - exact).norm(), 1e-9);
+      EXPECT_LT((at(back, 1.0 - share) - exact).norm(), 1e-9);
+    }
+    start = ends[k];
+  }
+}
+
+TEST(CurveThrough, OpenPointsKnowTheirPlaces) {
+  Points points;
+  for (int k = 0; k <= 4; ++k) {  // a straight side, then an arc off a corner
+    points.emplace_back(k, 0, 0);
+  }
+  for (int k = 1; k <= 6; ++k) {
+    const double a = 0.25 * kWholeTurn * k / 6.0;
+    points.emplace_back(4.0 - 2.0 * std::sin(a), 2.0 - 2.0 * std::cos(a), 0);
+  }
+  const solid::PointCurve curve = solid::curve_through(points, false);
+  ASSERT_EQ(curve.pieces.size(), 2U);
+  EXPECT_TRUE(
+      std::holds_alternative<solid::StraightLine>(curve.pieces[0].curve));
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const auto& [piece, share] = curve.at[k];
+    const solid::RimPiece& on = curve.pieces[piece];
+    EXPECT_LT(
+        (solid::point_of(on.curve, on.first + share * (on.last - on.first)) -
+         points[k])
+            .norm(),
+        1e-4);
   }
 }
 

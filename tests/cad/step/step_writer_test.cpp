@@ -95,6 +95,19 @@ TEST_F(StepWriter, WritesASolidWithItsMirrorImage) {
   EXPECT_THAT(read_file(file), testing::HasSubstr("'side_2 too'"));
 }
 
+TEST_F(StepWriter, WritesSeveralSolidsByTheirNames) {
+  const auto file = folder_.path() / "boxes.step";
+  const step::StepReport report = step::write_step(
+      file, {{"small", box({1.0, 1.0, 1.0})}, {"large", box({1.0, 2.0, 3.0})}},
+      {.name = "Boxes"});
+  EXPECT_EQ(report.shells, 2);
+  EXPECT_NEAR(report.volume, 7.0, 1e-12);
+  EXPECT_LT((report.mass_center - Vec3(3.5, 6.5, 9.5) / 7.0).norm(), 1e-12);
+  const std::string text = read_file(file);
+  EXPECT_THAT(text, testing::HasSubstr("PRODUCT('small'"));
+  EXPECT_THAT(text, testing::HasSubstr("PRODUCT('large'"));
+}
+
 TEST_F(StepWriter, WritesTheSameBitsTwice) {
   const auto one = folder_.path() / "one.step";
   const auto two = folder_.path() / "two.step";
@@ -209,7 +222,7 @@ TEST(StepFaults, ComeThroughTheHelperUnchanged) {
   open.faces.pop_back();
   EXPECT_EQ(fault_of(open),
             "the solid is not closed: edge 2 of face 'side_0' is used 1 times; "
-            "where lines of films meet in points export it as step-faceted");
+            "settle it with another --edge, or export it as step-faceted");
   EXPECT_EQ(fault_of(box({1.0, 1.0, -1.0})),
             "the part has 0 outer shells; a STEP solid has one");
   solid::Brep moved = box({1.0, 1.0, 1.0});

@@ -10,7 +10,7 @@
 #include "evolve/curves/curve_contact.h"
 #include "evolve/frozen/film_model.h"
 #include "pipeline/reader/case_reader.h"
-#include "pipeline/results/export_step.h"
+#include "pipeline/step_parts/export_step.h"
 #include "pipeline/store/stored_case.h"
 #include "tests/support/temp_folder.h"
 
@@ -114,7 +114,7 @@ class CurvesOfStep : public testing::Test {
   /// The strut between its own curves, written to part.step.
   case_data::Case write_part(const std::string& curves = kRoundedBox) const {
     const case_data::Case own = good(strut(curves, "mm-N-MPa"));
-    results::export_step(
+    step_parts::export_step(
         path("part.step"),
         case_data::evaluate(own, case_data::initial_design(own)).film_system,
         {.title = "strut", .unit = "mm", .edge = 4.0});

@@ -9,7 +9,7 @@
 
 #include "core/error.h"
 #include "core/monitor.h"
-#include "pipeline/results/export_step.h"
+#include "pipeline/step_parts/export_step.h"
 #include "pipeline/whole/whole_system.h"
 #include "tests/support/case_text.h"
 #include "tests/support/temp_folder.h"
@@ -54,8 +54,8 @@ TEST(CutStep, IsOneValidSolidOfTheWhole) {
     EXPECT_EQ(whole.system.caps.size(), 2U);
     const TempFolder folder;
     CutSaid said;
-    results::export_step(folder / "part.step", whole.system,
-                         {.title = "part", .edge = 4.0, .monitor = &said});
+    step_parts::export_step(folder / "part.step", whole.system,
+                            {.title = "part", .edge = 4.0, .monitor = &said});
     const std::string before = "valid closed solid of ";
     const std::size_t at = said.text.find(before);
     ASSERT_NE(at, std::string::npos) << said.text;

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "core/monitor.h"
-#include "pipeline/results/export_step.h"
+#include "pipeline/step_parts/export_step.h"
 #include "tests/support/case_text.h"
 #include "tests/support/rod_on_plate.h"
 #include "tests/support/temp_folder.h"
@@ -30,7 +30,7 @@ double volume_of(const std::string& text) {
   const TempFolder folder;
   const case_data::Case input = case_of(text);
   Said said;
-  results::export_step(
+  step_parts::export_step(
       folder / "part.step",
       case_data::evaluate(input, case_data::initial_design(input)).film_system,
       {.title = "part", .edge = 1.5, .monitor = &said});

@@ -1,4 +1,4 @@
-#include "pipeline/results/export_step.h"
+#include "pipeline/step_parts/export_step.h"
 
 #include <algorithm>
 #include <map>
@@ -6,7 +6,7 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
-#include "cad/solid/bulge_volume.h"
+#include "cad/solid/film_mesh.h"
 #include "cad/solid/film_solid.h"
 #include "cad/solid/mesh_parts.h"
 #include "cad/step/step_writer.h"
@@ -15,14 +15,13 @@
 #include "evolve/frozen/film_model.h"
 #include "pipeline/case_data/case_symmetry.h"
 #include "pipeline/forward/fillets.h"
-#include "pipeline/results/rim_pieces.h"
+#include "pipeline/step_parts/rim_pieces.h"
+#include "pipeline/step_parts/step_figures.h"
 
-namespace meniscus::results {
+namespace meniscus::step_parts {
 
 namespace {
 
-constexpr double kMostDeviation = 0.1;    // of the film's edge: else a warning
-constexpr double kMostBreak = 1.0;        // [degree]
 constexpr std::size_t kMostPlanes = 200;  // of a solid from a file
 constexpr double kFlatRing = 1e-7;        // of the part's size
 
@@ -246,10 +245,6 @@ frozen::FilmModel settled(const films::FilmSystem& system, double edge) {
   return model;
 }
 
-std::string number_of(int count, const char* what) {
-  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
-}
-
 /// ", 7 faces of STEP solids"; empty: none.
 std::string faces_text(const solid::Brep& brep) {
   std::size_t faces = 0;
@@ -261,48 +256,7 @@ std::string faces_text(const solid::Brep& brep) {
                                   faces == 1 ? "" : "s");
 }
 
-void tell(const StepExport& options, const solid::FilmSolid& solid,
-          const step::StepReport& step) {
-  const solid::FilmSolidReport& film = solid.report;
-  Monitor& monitor =
-      options.monitor != nullptr ? *options.monitor : silent_monitor();
-  const std::string& unit = options.unit;
-  monitor.log(
-      Severity::Info,
-      fmt::format("{}, {}, {}, {}, {}{}; valid closed solid of {:.6g} {}3",
-                  number_of(film.patches, "B-spline face"),
-                  number_of(film.planes, "plane"),
-                  number_of(film.cylinders, "cylinder"),
-                  number_of(film.cones, "cone"),
-                  number_of(film.spheres, "sphere"), faces_text(solid.brep),
-                  step.volume, unit));
-  for (const solid::SimpleFace& face : film.simple) {
-    monitor.log(
-        Severity::Info,
-        fmt::format("{} is a {}{}; the film leaves it by {:.2g} {} at "
-                    "most ({:.2g} of its edge)",
-                    face.film, face.shape, face.has_radius ? " " + unit : "",
-                    face.off, unit, face.off / options.edge));
-  }
-  monitor.log(
-      Severity::Info,
-      fmt::format(
-          "gap at edges {:.2g} {} at most; film to faces {:.2g} {}, faces "
-          "to film {:.2g} {} ({:.2g} of its edge)",
-          film.gap, unit, film.film_to_solid, unit, film.solid_to_film, unit,
-          std::max(film.film_to_solid, film.solid_to_film) / options.edge));
-  monitor.log(
-      Severity::Info,
-      fmt::format("tangent breaks between faces of one film {:.2g} "
-                  "degrees at most{}",
-                  film.tangent_break,
-                  film.break_film.empty()
-                      ? ""
-                      : fmt::format(", in {} at ({:.4g}, {:.4g}, "
-                                    "{:.4g})",
-                                    film.break_film, film.break_place[0],
-                                    film.break_place[1], film.break_place[2])));
-}
+}  // namespace
 
 solid::Brep whole_solid(solid::Brep brep, const StepExport& options) {
   for (const step::MirrorPlane& plane : options.mirrors) {
@@ -310,8 +264,6 @@ solid::Brep whole_solid(solid::Brep brep, const StepExport& options) {
   }
   return brep;
 }
-
-}  // namespace
 
 void export_step(const std::filesystem::path& file,
                  const films::FilmSystem& system, const StepExport& options) {
@@ -352,7 +304,8 @@ void export_step(const std::filesystem::path& file,
   solid::FilmSolid solid = solid::film_solid(input);
   solid.brep.exact = exact_faces_of(system);
   solid.brep = whole_solid(std::move(solid.brep), options);
-  tell(options, solid, step::write_step(file, solid.brep, names));
+  tell_step(options, solid.report, faces_text(solid.brep), 1,
+            step::write_step(file, solid.brep, names));
 }
 
-}  // namespace meniscus::results
+}  // namespace meniscus::step_parts

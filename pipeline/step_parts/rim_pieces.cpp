@@ -1,4 +1,4 @@
-#include "pipeline/results/rim_pieces.h"
+#include "pipeline/step_parts/rim_pieces.h"
 
 #include <array>
 #include <cmath>
@@ -11,7 +11,7 @@
 #include "evolve/curves/curve_copy.h"
 #include "evolve/curves/curve_shape.h"
 
-namespace meniscus::results {
+namespace meniscus::step_parts {
 
 namespace {
 
@@ -147,4 +147,4 @@ std::vector<solid::RimPiece> rim_pieces(const curves::CurveShape& shape) {
   return std::visit([](const auto& s) { return pieces_of(s); }, shape);
 }
 
-}  // namespace meniscus::results
+}  // namespace meniscus::step_parts

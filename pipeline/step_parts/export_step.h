@@ -9,7 +9,7 @@
 #include "core/monitor.h"
 #include "evolve/films/film_system.h"
 
-namespace meniscus::results {
+namespace meniscus::step_parts {
 
 struct StepExport {
   std::string title;        // of the part
@@ -20,6 +20,9 @@ struct StepExport {
   Monitor* monitor = nullptr;  // hears what was measured, asked for a stop
 };
 
+/// What is drawn and its images in options.mirrors.
+solid::Brep whole_solid(solid::Brep brep, const StepExport& options);
+
 /// Settles the films of `system` and writes them as a closed solid: films as
 /// B-spline faces, caps as planes with their exact rims. Throws MeshError (no
 /// stable film, a film that cannot be cut into patches, no valid solid),
@@ -27,4 +30,4 @@ struct StepExport {
 void export_step(const std::filesystem::path& file,
                  const films::FilmSystem& system, const StepExport& options);
 
-}  // namespace meniscus::results
+}  // namespace meniscus::step_parts

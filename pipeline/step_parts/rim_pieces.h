@@ -6,10 +6,10 @@
 #include "cad/solid/rim_curve.h"
 #include "evolve/curves/curve.h"
 
-namespace meniscus::results {
+namespace meniscus::step_parts {
 
 /// End to end, all around. None for shapes of other curves: there a spline goes
 /// through the film's own points.
 std::vector<solid::RimPiece> rim_pieces(const curves::CurveShape& shape);
 
-}  // namespace meniscus::results
+}  // namespace meniscus::step_parts
