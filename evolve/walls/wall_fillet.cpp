@@ -95,6 +95,10 @@ class Fillets {
     return side == 0 ? SideKey{front, back, in_.sheets.of[f]}
                      : SideKey{back, front, in_.sheets.of[f]};
   }
+  std::array<SideKey, 2> keys_of(const SideAt& at, const Edge& edge) const {
+    return {key_of(at.facet, at.side, edge[0]),
+            key_of(at.facet, at.side, edge[1])};
+  }
   const WallSpec& spec_of(int f) const {
     return in_.walls[in_.films.wall[facet(f).label]];
   }
@@ -132,13 +136,10 @@ class Fillets {
       }
       for (const auto& [points, pair] : sides) {
         for (std::size_t i = 0; i < 2 && pair.size() == 2; ++i) {
-          const auto keys = [&](const SideAt& at) {
-            return std::array{key_of(at.facet, at.side, edge[0]),
-                              key_of(at.facet, at.side, edge[1])};
-          };
           const SideAt& own = pair[i];
           sectors_[{in_.sheets.of[own.facet], sheet_side(own.facet, own.side)}]
-              .push_back({edge, keys(own), keys(pair[1 - i])});
+              .push_back(
+                  {edge, keys_of(own, edge), keys_of(pair[1 - i], edge)});
         }
       }
     }
