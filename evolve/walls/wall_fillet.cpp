@@ -54,6 +54,7 @@ struct SectorEdge {
   Edge film = {};
   std::array<SideKey, 2> own = {};    // at its ends
   std::array<SideKey, 2> other = {};  // the facing side's
+  double ends = 0.0;  // from where on the own side is as it was [length]
 };
 
 class Fillets {
@@ -119,6 +120,7 @@ class Fillets {
     for (const auto& [edge, facets] : facets_about_edges(in_.topology.facets)) {
       if (is_junction(in_.topology.facets, facets)) {
         edges_.emplace_back(edge, facets);
+        lines_.insert(edge);
       }
     }
   }
@@ -166,8 +168,16 @@ class Fillets {
     }
   }
 
-  static OffsetPlane plane_of(const SideFrame& frame) {
-    return {frame.normal.normalized(), frame.offset / frame.count};
+  /// Where the sides meet, each `more` in front of itself.
+  static OffsetCorner corner_between(const std::vector<SideFrame*>& frames,
+                                     double more) {
+    std::vector<OffsetPlane> planes;
+    planes.reserve(frames.size());
+    for (const SideFrame* frame : frames) {
+      planes.push_back(
+          {frame->normal.normalized(), frame->offset / frame->count + more});
+    }
+    return offset_corner(planes);
   }
 
   /// The sides that look into the sector of each wall point.
@@ -216,25 +226,17 @@ class Fillets {
   // The sides of one sector have one fillet, the largest that is asked for, and
   // no larger than all of them have room for.
   void fit_fillets() {
-    for (const auto& [edge, facets] : edges_) {
-      lines_.insert(edge);
-    }
     for (const auto& [point, frames] : frames_of_points()) {
-      std::vector<OffsetPlane> planes;
       double radius = 0.0;
       int wall = frames[0]->wall;
       for (const SideFrame* frame : frames) {
-        planes.push_back(plane_of(*frame));
         if (frame->fillet > radius) {
           radius = frame->fillet;
           wall = frame->wall;
         }
       }
-      const Vec3 sharp = offset_corner(planes).point;
-      for (OffsetPlane& plane : planes) {
-        plane.offset += radius;
-      }
-      const Vec3 ball = offset_corner(planes).point;
+      const Vec3 sharp = corner_between(frames, 0.0).point;
+      const Vec3 ball = corner_between(frames, radius).point;
       double part = 1.0;
       for (const SideFrame* frame : frames) {
         const Vec3 inward = frame->inward.normalized();
@@ -257,18 +259,12 @@ class Fillets {
   void round_lines() {
     for (const auto& [point, frames] : frames_of_points()) {
       const double fillet = frames[0]->fillet;
-      std::vector<OffsetPlane> planes;
-      for (const SideFrame* frame : frames) {
-        planes.push_back(plane_of(*frame));
-      }
-      const Vec3 sharp = offset_corner(planes).point;
-      for (OffsetPlane& plane : planes) {
-        plane.offset += fillet;
-      }
-      const OffsetCorner ball = offset_corner(planes);
+      const Vec3 sharp = corner_between(frames, 0.0).point;
+      const OffsetCorner ball = corner_between(frames, fillet);
       Vec3 normals = Vec3::Zero();
-      for (std::size_t i = 0; i < planes.size(); ++i) {
-        normals += static_cast<double>(ball.on[i]) * planes[i].normal;
+      for (std::size_t i = 0; i < frames.size(); ++i) {
+        normals +=
+            static_cast<double>(ball.on[i]) * frames[i]->normal.normalized();
       }
       const Vec3 out = (ball.inverse * normals).normalized();
       const bool open = std::any_of(
@@ -506,7 +502,10 @@ class Fillets {
     if (found == sectors_.end()) {
       return;
     }
-    const std::vector<SectorEdge>& edges = found->second;
+    std::vector<SectorEdge>& edges = found->second;
+    for (SectorEdge& edge : edges) {
+      edge.ends = std::max(arc_at(edge, 0.0).ends(), arc_at(edge, 1.0).ends());
+    }
     const int own_wall = frames_.at(edges.front().own[0]).wall;
     const OffsetSheet& own = in_.sheets.offset[sheet];
     const Points& film = own.sheet.film.points;
@@ -630,12 +629,7 @@ class Fillets {
       const double part =
           std::clamp(way.dot(p - a) / way.squaredNorm(), 0.0, 1.0);
       const double distance = (p - a - part * way).norm();
-      const auto ends = ends_.try_emplace(edge.own, -1.0).first;
-      if (ends->second < 0.0) {
-        ends->second =
-            std::max(arc_at(edge, 0.0).ends(), arc_at(edge, 1.0).ends());
-      }
-      if (distance >= ends->second) {
+      if (distance >= edge.ends) {
         continue;
       }
       const FilletArc arc = arc_at(edge, part);
@@ -656,7 +650,6 @@ class Fillets {
   std::map<SideKey, SideFrame> frames_;
   std::map<int, Points> rims_;
   std::map<std::pair<int, int>, std::vector<SectorEdge>> sectors_;
-  mutable std::map<std::array<SideKey, 2>, double> ends_;
 };
 
 }  // namespace

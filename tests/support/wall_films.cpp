@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <utility>
 
 #include "core/geometry/edge_key.h"
 #include "tests/support/sheet_shapes.h"
@@ -50,15 +51,14 @@ SurfaceMesh film_fan(const std::vector<double>& angles, double rise, int n) {
   return joined_films(films);
 }
 
-walls::ThickWall wall_of(const SurfaceMesh& films, double thickness,
-                         int levels) {
+walls::WallFilms wall_films_of(SurfaceMesh films, int levels,
+                               double thickness) {
   walls::WallFilms input;
-  input.mesh = films;
   input.wall.assign(films.labels.size(), 0);
   input.region = {0};
   input.asked = {thickness};
   input.levels = levels;
-  Points& points = input.mesh.points;
+  Points& points = films.points;
   std::vector<Triangle> facets = films.facets;
   for (int level = 0; level < levels; ++level) {
     std::vector<Triangle> finer;
@@ -80,15 +80,22 @@ walls::ThickWall wall_of(const SurfaceMesh& films, double thickness,
     }
     facets = std::move(finer);
   }
+  input.mesh = std::move(films);
+  return input;
+}
+
+walls::ThickWall wall_of(const SurfaceMesh& films, double thickness,
+                         int levels) {
   PlaceField field = Expression::parse("t", {"x", "y", "z", "t"});
   field.names = {"t"};
   field.numbers = VectorX::Constant(1, thickness);
-  const walls::WallModel model(input, {{.name = "web",
-                                        .films = films.labels,
-                                        .thickness = field,
-                                        .side = walls::WallSide::Both,
-                                        .fillet = std::nullopt,
-                                        .region = 0}});
+  const walls::WallModel model(wall_films_of(films, levels, thickness),
+                               {{.name = "web",
+                                 .films = films.labels,
+                                 .thickness = field,
+                                 .side = walls::WallSide::Both,
+                                 .fillet = std::nullopt,
+                                 .region = 0}});
   return model.walls().at(0);
 }
 

@@ -16,6 +16,9 @@ SurfaceMesh joined_films(const std::vector<SurfaceMesh>& films);
 SurfaceMesh film_fan(const std::vector<double>& angles, double rise = 0.0,
                      int n = 8);
 
+/// The films as one wall of about this thickness, halved `levels` times.
+walls::WallFilms wall_films_of(SurfaceMesh films, int levels, double thickness);
+
 /// One body of the films at this thickness, halved `levels` times.
 walls::ThickWall wall_of(const SurfaceMesh& films, double thickness,
                          int levels);

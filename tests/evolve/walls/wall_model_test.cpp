@@ -15,9 +15,9 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
-#include "core/geometry/edge_key.h"
 #include "evolve/walls/facet_probe.h"
 #include "tests/support/sheet_shapes.h"
+#include "tests/support/wall_films.h"
 
 namespace meniscus::wall_model_test {
 namespace {
@@ -27,31 +27,6 @@ constexpr double kPromisedThickness =
     0.05;                                // of the thickness away from junctions
 constexpr double kWallRounding = 1e-11;  // of sums over some thousand facets
 constexpr double kDifference = 1e-6;     // central differences, step 1e-6
-
-/// Films that share points closer than 1e-9.
-SurfaceMesh welded(const std::vector<SurfaceMesh>& films) {
-  SurfaceMesh all;
-  for (const SurfaceMesh& film : films) {
-    std::vector<int> id;
-    for (const Vec3& p : film.points) {
-      int at = 0;
-      while (at < static_cast<int>(all.points.size()) &&
-             (all.points[at] - p).norm() > 1e-9) {
-        ++at;
-      }
-      if (at == static_cast<int>(all.points.size())) {
-        all.points.push_back(p);
-      }
-      id.push_back(at);
-    }
-    for (const Triangle& t : film.facets) {
-      all.facets.push_back({id[t[0]], id[t[1]], id[t[2]]});
-      all.facet_label.push_back(static_cast<int>(all.labels.size()));
-    }
-    all.labels.push_back(film.labels[0]);
-  }
-  return all;
-}
 
 SurfaceMesh flat(const std::string& name, const Vec3& o, const Vec3& u,
                  const Vec3& v, int n = 8) {
@@ -68,7 +43,7 @@ SurfaceMesh fan(const std::vector<double>& angles, int n = 8) {
     films.push_back(flat("film" + std::to_string(films.size()), Vec3::Zero(),
                          {std::cos(a), 0, std::sin(a)}, {0, 2, 0}, n));
   }
-  return welded(films);
+  return joined_films(films);
 }
 
 /// Six films from the edges of a tetrahedron to its middle.
@@ -100,39 +75,7 @@ SurfaceMesh tetrahedral(int n = 8) {
       films.push_back(std::move(film));
     }
   }
-  return welded(films);
-}
-
-walls::WallFilms films_of(SurfaceMesh mesh, int levels, double thickness) {
-  walls::WallFilms films;
-  films.wall.assign(mesh.labels.size(), 0);
-  films.region = {0};
-  films.asked = {thickness};
-  films.levels = levels;
-  std::vector<Triangle> facets = mesh.facets;
-  for (int level = 0; level < levels; ++level) {
-    std::vector<Triangle> finer;
-    for (const Triangle& t : facets) {
-      Triangle m;
-      for (int k = 0; k < 3; ++k) {
-        const int a = t[k];
-        const int b = t[(k + 1) % 3];
-        const auto [at, is_new] = films.middles.try_emplace(
-            edge_key(a, b), static_cast<int>(mesh.points.size()));
-        if (is_new) {
-          mesh.points.push_back(0.5 * (mesh.points[a] + mesh.points[b]));
-        }
-        m[k] = at->second;
-      }
-      finer.push_back({t[0], m[0], m[2]});
-      finer.push_back({t[1], m[1], m[0]});
-      finer.push_back({t[2], m[2], m[1]});
-      finer.push_back(m);
-    }
-    facets = std::move(finer);
-  }
-  films.mesh = std::move(mesh);
-  return films;
+  return joined_films(films);
 }
 
 /// A number that follows the design.
@@ -161,7 +104,7 @@ struct Made {
 
 Made make(const SurfaceMesh& mesh, double thickness, int levels = 1,
           std::optional<double> fillet = std::nullopt) {
-  walls::WallFilms films = films_of(mesh, levels, thickness);
+  walls::WallFilms films = wall_films_of(mesh, levels, thickness);
   std::vector<walls::WallSpec> specs = {spec(mesh, thickness, fillet)};
   walls::WallModel model(films, specs);
   return {std::move(films), std::move(specs), std::move(model)};
@@ -318,7 +261,7 @@ RandomFan random_fan(std::mt19937& random, const RandomBounds& bounds) {
 void expect_walls(const SurfaceMesh& mesh, const RandomFan& fan,
                   const std::function<double(const Vec3&)>& from_line) {
   constexpr double kLeastOfAsked = 0.9;
-  walls::WallFilms films = films_of(mesh, 1, 0.1);
+  walls::WallFilms films = wall_films_of(mesh, 1, 0.1);
   std::vector<walls::WallSpec> specs;
   for (std::size_t k = 0; k < fan.angles.size(); ++k) {
     films.wall[k] = static_cast<int>(k);
@@ -375,7 +318,7 @@ TEST(WallsAtALine, AroundACircle) {
           {.rows = films.rows, .columns = 8 * films.rows, .around = true},
           "film" + std::to_string(parts.size())));
     }
-    expect_walls(welded(parts), films, [](const Vec3& p) {
+    expect_walls(joined_films(parts), films, [](const Vec3& p) {
       return std::hypot(std::hypot(p.x(), p.y()) - kRadius, p.z());
     });
   }
@@ -413,17 +356,17 @@ TEST(WallsAtAPoint, AreClosedAtShortEdges) {
   const Vec3 z = Vec3::UnitZ();
   const Vec3 o = Vec3::Zero();
   for (const int n : {8, 24}) {
-    const SurfaceMesh corner = welded(
+    const SurfaceMesh corner = joined_films(
         {flat("a", o, x, y, n), flat("b", o, y, z, n), flat("c", o, z, x, n)});
     // A line of two films in one plane that ends on a rib across it.
     const SurfaceMesh halves =
-        welded({flat("left", o, -x, y, n), flat("low", o, x, y, n),
-                flat("high", y, x, y, n), flat("left2", y, -x, y, n),
-                flat("rib", o, z, y, n), flat("rib2", y, z, y, n)});
+        joined_films({flat("left", o, -x, y, n), flat("low", o, x, y, n),
+                      flat("high", y, x, y, n), flat("left2", y, -x, y, n),
+                      flat("rib", o, z, y, n), flat("rib2", y, z, y, n)});
     const SurfaceMesh gusset =
-        welded({flat("plate", o, x, y, n), flat("other", o, -x, y, n),
-                flat("slanted", o, Vec3(0, 1, 1), y, n)});
-    const SurfaceMesh crossing = welded(
+        joined_films({flat("plate", o, x, y, n), flat("other", o, -x, y, n),
+                      flat("slanted", o, Vec3(0, 1, 1), y, n)});
+    const SurfaceMesh crossing = joined_films(
         {flat("a", o, x, y, n), flat("b", o, -x, y, n), flat("c", o, x, -y, n),
          flat("d", o, -x, -y, n), flat("e", o, z, x, n), flat("f", o, z, -x, n),
          flat("g", o, z, y, n), flat("h", o, z, -y, n)});
@@ -515,7 +458,7 @@ TEST(WallModel, TransposesItsDerivative) {
   thickness.names = {"t", "s"};
   thickness.numbers = VectorX::Constant(2, 0.1);
   thickness.numbers[1] = 0.7;
-  const walls::WallFilms films = films_of(mesh, 1, 0.1);
+  const walls::WallFilms films = wall_films_of(mesh, 1, 0.1);
   const Made made = {films, specs, walls::WallModel(films, specs)};
   const std::vector<VectorX> t = {1.2 * thickness.numbers};
   Points film = made.films.mesh.points;
@@ -614,7 +557,7 @@ TEST(WallModel, OfOneSideMeetsOthers) {
     specs[0].films = {"film0", "film2"};
     specs[0].side = walls::WallSide::Inside;
     specs[1].films = {"film1"};
-    walls::WallFilms films = films_of(mesh, 1, t);
+    walls::WallFilms films = wall_films_of(mesh, 1, t);
     films.wall = {0, 1, 0};
     films.region = {0, 0};
     films.asked = {t, t};
