@@ -234,6 +234,20 @@ int FilmJoiner::label_for(int film, const Points& side) const {
   return best;
 }
 
+/// How far the nearest curve of a film is.
+double FilmJoiner::off_curves(int label, const Vec3& place) const {
+  double least = std::numeric_limits<double>::infinity();
+  const films::FilmSpec& film = system_.films[static_cast<std::size_t>(label)];
+  for (const curves::Curve& curve : system_.curves) {
+    if (std::count(film.curves.begin(), film.curves.end(), curve.name) > 0) {
+      const double t = films::nearest_parameter(curve.shape, place, 0.0);
+      least =
+          std::min(least, (curves::point_at(curve.shape, t) - place).norm());
+    }
+  }
+  return least;
+}
+
 /// The vertex of all these films at which a corner of `film` meets them.
 int FilmJoiner::corner_on(int film, const Corner& corner,
                           const std::vector<int>& labels) {
@@ -251,17 +265,18 @@ int FilmJoiner::corner_on(int film, const Corner& corner,
     return amid ? on_curve || taken_[v] != 0 : corner.held && !on_curve;
   });
   const int found = nearest(there, corner.place);
-  const double off = found < 0
-                         ? std::numeric_limits<double>::infinity()
-                         : (complex_.mesh.points[found] - corner.place).norm();
   const std::string& name = system_.films[static_cast<std::size_t>(film)].name;
   const std::string& other = complex_.surfaces[labels.front()].name;
-  if (corner.held && off > kJoinReach * extent_of(complex_)) {
+  const double reach = kJoinReach * extent_of(complex_);
+  if (corner.held &&
+      (found < 0 ||
+       (complex_.mesh.points[found] - corner.place).norm() > reach)) {
     throw InvalidInput(fmt::format(
         "film '{}' joins '{}' along a line that ends at {}, {:.4g} from the "
         "nearest place where that film is held; let the line begin and end on "
         "curves of '{}', or on another film that it joins, or be closed",
-        name, other, place_text(corner.place), off, other));
+        name, other, place_text(corner.place),
+        off_curves(labels.front(), corner.place), other));
   }
   if (found < 0) {
     throw InvalidInput(fmt::format(
@@ -314,8 +329,7 @@ std::vector<int> FilmJoiner::chain(int film, int label, int from, int to,
       if ((w != to && !passes(w)) || along_rim) {
         continue;
       }
-      const double off =
-          off_line(guess, 0.5 * (points[v] + points[w])) / edge_;
+      const double off = off_line(guess, 0.5 * (points[v] + points[w])) / edge_;
       const double length = (points[w] - points[v]).norm();
       const double total = so_far + length * (1.0 + off * off);
       const auto known = cost.find(w);
@@ -331,7 +345,8 @@ std::vector<int> FilmJoiner::chain(int film, int label, int from, int to,
         "film '{}' finds no way along '{}' from {} to {}; take shorter edges, "
         "or let it begin farther from other lines and rims",
         system_.films[static_cast<std::size_t>(film)].name,
-        complex_.surfaces[label].name, place_text(points[from]), place_text(points[to])));
+        complex_.surfaces[label].name, place_text(points[from]),
+        place_text(points[to])));
   }
   std::vector<int> result = {to};
   while (result.back() != from) {
