@@ -9,6 +9,7 @@
 #include <fmt/ranges.h>
 
 #include "core/math/expression_code.h"
+#include "core/math/macaulay.h"
 #include "core/math/taped.h"
 
 namespace meniscus {
@@ -115,8 +116,10 @@ Scalar apply_function(int function, const Scalar* a) {
       return value_of(a[1]) < value_of(a[0]) ? a[1] : a[0];
     case 17:
       return value_of(a[1]) > value_of(a[0]) ? a[1] : a[0];
-    default:
+    case 18:
       return pow(a[0], a[1]);
+    default:
+      return macaulay(a[0], a[1], a[2]);
   }
 }
 

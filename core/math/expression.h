@@ -4,7 +4,7 @@
 ///
 ///   + - * / ^ (right associative)   comparisons < <= > >= == !=
 ///   sin cos tan asin acos atan atan2 sinh cosh tanh exp log log10 sqrt abs
-///   min max pow sqr if(condition, then, else)
+///   min max pow sqr if(condition, then, else) macaulay(s, n, w)
 ///   pi  e  deg (= pi / 180; angles are radians)
 ///   t[2, i + 1]: an element of a vector, its indices constant, from 1
 ///
@@ -12,6 +12,11 @@
 /// that holds is evaluated. abs, min, max, if and comparisons are not smooth
 /// where they switch; derivatives there are those of the side taken (abs at 0:
 /// of the right side).
+///
+/// macaulay(s, n, w) is the bracket <s>^n, n >= 0, rounded over the width w:
+/// ((s + sqrt(s^2 + w^2)) / 2)^n, and for n = 0 the slope of that of n = 1,
+/// (1 + s / sqrt(s^2 + w^2)) / 2. With w = 0 it has its corner: max(s, 0)^n,
+/// and a switch that is 1 at s = 0.
 #pragma once
 
 #include <optional>

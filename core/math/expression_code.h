@@ -42,11 +42,11 @@ struct Function {
   const char* name;
   int arguments;
 };
-constexpr std::array<Function, 19> kFunctions = {{
+constexpr std::array<Function, 20> kFunctions = {{
     {"sin", 1},   {"cos", 1},   {"tan", 1},  {"asin", 1}, {"acos", 1},
     {"atan", 1},  {"sinh", 1},  {"cosh", 1}, {"tanh", 1}, {"exp", 1},
     {"log", 1},   {"log10", 1}, {"sqrt", 1}, {"abs", 1},  {"sqr", 1},
-    {"atan2", 2}, {"min", 2},   {"max", 2},  {"pow", 2},
+    {"atan2", 2}, {"min", 2},   {"max", 2},  {"pow", 2},  {"macaulay", 3},
 }};
 
 /// if(condition, then, else) is no function: only one of its branches runs.

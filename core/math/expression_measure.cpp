@@ -1,3 +1,4 @@
+#include <array>
 #include <optional>
 
 #include <fmt/format.h>
@@ -124,6 +125,11 @@ class Measurer {
     }
     if (is_function(operation, "abs")) {
       return a;
+    }
+    if (is_function(operation, "macaulay")) {
+      const std::array<Measured, 2> both = {
+          {{like(a, operands[2].measure, name, column), {}}, operands[1]}};
+      return power(both.data(), column);
     }
     if (arity(operation) == 2) {
       const Measure both = like(a, operands[1].measure, name, column);

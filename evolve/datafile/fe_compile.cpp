@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/math/macaulay.h"
 #include "evolve/datafile/fe_expression.h"
 
 namespace meniscus::datafile {
@@ -68,6 +69,9 @@ double function_value(const std::string& name, double a, double b, double c) {
   if (const auto found = binary_functions().find(name);
       found != binary_functions().end()) {
     return found->second(a, b);
+  }
+  if (name == "macaulay") {
+    return macaulay(a, b, c);
   }
   return a != 0.0 ? b : c;  // if
 }
@@ -209,6 +213,10 @@ class Writer {
     if (chooses && below[0].number) {
       return std::move(below[*below[0].number != 0.0 ? 1 : 2]);
     }
+    if (node.op == FeOperator::Call && node.name == "macaulay" &&
+        !below[1].number) {
+      fail(file_, node.place, "a bracket whose power varies is not supported");
+    }
     for (Piece& part : below) {
       if (part.number) {
         if (!std::isfinite(*part.number)) {
@@ -294,11 +302,38 @@ class Writer {
     }
   }
 
+  /// Evolver has no such function.
+  Text macaulay_text(const Text& s, const Text& n, const Text& w) {
+    if (ours_) {
+      return {fmt::format("macaulay({}, {}, {})", s.text, n.text, w.text),
+              Grip::Atom};
+    }
+    const bool switches = n.text == "0";
+    if (w.text == "0") {
+      return switches
+                 ? if_text(infix(s, " < ", {"0", Grip::Atom}, Grip::Comparison),
+                           "0", "1")
+                 : infix({fmt::format("maximum({}, 0)", s.text)}, "^", n,
+                         Grip::Power);
+    }
+    const std::string root =
+        fmt::format("sqrt(sqr({}) + sqr({}))", s.text, w.text);
+    return switches
+               ? Text{fmt::format("(1 + {}/{})/2", s.within(Grip::Power), root),
+                      Grip::Product}
+               : infix(
+                     {fmt::format("(({} + {})/2)", s.within(Grip::Sum), root)},
+                     "^", n, Grip::Power);
+  }
+
   Text call_text(const FeNode& node, const Text& a, const Text& b,
                  const Text& c) {
     std::string name = node.name;
     if (name == "if") {
       return if_text(a, b.text, c.text);
+    }
+    if (name == "macaulay") {
+      return macaulay_text(a, b, c);
     }
     if (name == "ceil" || name == "floor") {
       fail(file_, node.place,

@@ -77,10 +77,6 @@ std::string linear(const Symbols& direction, const Symbol& shift) {
   return fmt::format("({}*x+{}*y+{}*z+{})", direction[0].text,
                      direction[1].text, direction[2].text, shift.text);
 }
-std::string linear(const Vec3& direction, double shift) {
-  return linear(Symbols{direction.x(), direction.y(), direction.z()},
-                Symbol(shift));
-}
 
 std::string square_from(const Symbols& at) {
   return fmt::format("sqr(x-{})+sqr(y-{})+sqr(z-{})", at[0].text, at[1].text,
@@ -314,19 +310,6 @@ films::RayOrigin amid(const films::FilmComplex& complex,
 }
 
 /// s - offset along the direction.
-std::string past(const Vec3& direction, double offset, double power) {
-  const double length = direction.norm();
-  require(std::isfinite(length) && length > 0.0,
-          fmt::format("Macaulay bracket: the direction ({}, {}, {}) has no "
-                      "length above 0",
-                      direction.x(), direction.y(), direction.z()));
-  require(std::isfinite(offset) && std::isfinite(power) && power >= 0.0,
-          fmt::format("Macaulay bracket: offset {} and power {} must be "
-                      "finite, the power not below 0",
-                      offset, power));
-  return linear(direction / length, -offset);
-}
-
 }  // namespace
 
 Expression place_expression(const std::string& text) {
@@ -418,28 +401,6 @@ films::FilmQuantity pressure_quantity(const films::FilmComplex& complex,
   quantity.origin = amid(complex, pressure);
   quantity.modulus = -1.0;
   return quantity;
-}
-
-std::string macaulay(const Vec3& direction, double offset, double power) {
-  const std::string s = past(direction, offset, power);
-  return power == 0.0 ? fmt::format("({}>=0)", s)
-                      : fmt::format("if({}>0,{}^({}),0)", s, s, power);
-}
-
-std::string smooth_macaulay(const Vec3& direction, double offset, double power,
-                            double width) {
-  require(std::isfinite(width) && width > 0.0,
-          fmt::format("Macaulay bracket: its width {} must be a length above 0",
-                      width));
-  const std::string s = past(direction, offset, power);
-  const double square = width * width;
-  const std::string root = fmt::format("sqrt(sqr{}+({}))", s, square);
-  if (power == 0.0) {
-    return fmt::format("0.5*(1+{}/{})", s, root);
-  }
-  // Below the corner the same number without the difference of near equals.
-  return fmt::format("if({}>0,0.5*({}+{}),({})/({}-{}))^({})", s, s, root,
-                     0.5 * square, root, s, power);
 }
 
 }  // namespace meniscus::energy

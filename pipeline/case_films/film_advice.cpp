@@ -295,6 +295,7 @@ std::string tried_advice(const case_data::Case& input,
   QuietMonitor quiet(outer);
   const Names named = surfaces_named(inputs.film_system, failure.message);
   std::vector<Trial> in_vain;
+  outer.progress({.stage = "film", .detail = failure.message});
   for (const Trial& trial :
        trials_of(input, inputs, named, of_films, options.edge)) {
     outer.progress({.stage = "film", .detail = "trying " + listed({trial})});

@@ -265,7 +265,9 @@ TEST_F(EvolverFe, AgreesOnCurvesAndTensionFields) {
   complex.surfaces[0].tension = 2.5;
   complex.surfaces[1].name = "thick";
   complex.surfaces[1].tension_field = Expression::parse(
-      "if(x > 0, 1 + x^2, 1) + 0.5*cos(pi*y)", {"x", "y", "z"});
+      "if(x > 0, 1 + x^2, 1) + 0.5*cos(pi*y) + macaulay(y - 0.2, 1, 0.1) + "
+      "macaulay(x, 0, 0.3) + macaulay(-x, 2, 0) + 0.1*macaulay(z - 0.5, 0, 0)",
+      {"x", "y", "z"});
   for (int k = 0; k < kAround; ++k) {
     const int next = (k + 1) % kAround;
     complex.mesh.facets.push_back({k, next, kAround + k});

@@ -1,8 +1,10 @@
 #include "core/math/expression.h"
 
 #include <clocale>
+#include <cmath>
 #include <random>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -86,6 +88,34 @@ TEST(Expression, KnowsItsFunctionsAndConstants) {
   EXPECT_EQ(value("tanh(a) - sinh(a) / cosh(a) < 1e-15"), 1.0);
 }
 
+TEST(Expression, BracketsSwitchAndRamp) {
+  const auto bracket = [](double s, double n, double w) {
+    return value(fmt::format("macaulay({}, {}, {})", s, n, w));
+  };
+  EXPECT_EQ(bracket(-0.1, 0, 0), 0.0);
+  EXPECT_EQ(bracket(0, 0, 0), 1.0);
+  EXPECT_EQ(bracket(-3, 1.5, 0), 0.0);
+  EXPECT_EQ(bracket(2, 1, 0), 2.0);
+  EXPECT_EQ(bracket(2, 3, 0), 8.0);
+  std::mt19937 random(8);
+  std::uniform_real_distribution<double> draw(0.0, 1.0);
+  for (int k = 0; k < 200; ++k) {
+    const double s = std::pow(10.0, 4.0 * draw(random) - 3.0);
+    const double w = std::pow(10.0, 3.0 * draw(random) - 3.0);
+    const double n = 3.0 * draw(random);
+    const double root = std::sqrt(s * s + w * w);
+    EXPECT_NEAR(bracket(s, 0, w), (1 + s / root) / 2, 1e-15);
+    EXPECT_NEAR(bracket(s, n, w), std::pow((s + root) / 2, n),
+                1e-14 * std::pow(root, n));
+    // To both sides of 0: <s> - <-s> = s and <s> <-s> = w^2 / 4, which the
+    // plain formula loses for s far below 0; switches add up to 1.
+    EXPECT_NEAR(bracket(s, 1, w) - bracket(-s, 1, w), s, 1e-15 * root);
+    EXPECT_NEAR(bracket(s, 1, w) * bracket(-s, 1, w), w * w / 4, 1e-15 * w * w);
+    EXPECT_NEAR(bracket(s, 0, w) + bracket(-s, 0, w), 1.0, 1e-15);
+  }
+  EXPECT_THROW(bracket(1, -1, 2), ExpressionError);
+}
+
 TEST(Expression, EvaluatesOnlyTheBranchThatHolds) {
   const std::string guarded = "if(support_x == 0, 1, sin(support_x)/support_x)";
   EXPECT_EQ(value(guarded, {0, 0, 0}), 1.0);
@@ -120,6 +150,8 @@ TEST(Expression, NamesWhatIsWrongAndWhere) {
   EXPECT_THAT(error_of("2 ** 3"), HasSubstr("4: a value is missing before"));
   EXPECT_THAT(error_of("sin()"), HasSubstr("a value is missing before ')'"));
   EXPECT_THAT(error_of("sin(1, 2)"), HasSubstr("sin takes 1 argument "));
+  EXPECT_THAT(error_of("macaulay(1, 2)"),
+              HasSubstr("macaulay takes 3 arguments"));
   EXPECT_THAT(error_of("atan2(1)"), HasSubstr("atan2 takes 2 arguments"));
   EXPECT_THAT(error_of("if(1, 2)"), HasSubstr("if takes 3 arguments"));
   EXPECT_THAT(error_of("if(1, 2, 3, 4)"), HasSubstr("if takes 3 arguments"));
@@ -365,6 +397,12 @@ TEST(Dual, DerivativesAgreeWithDifferences) {
                            "min(a, b) * a",
                            "max(a * a, b)",
                            "if(a < b, a * b, a / b)",
+                           "macaulay(a - b, 0, 0.4)",
+                           "macaulay(a - b, 1, 0.4)",
+                           "macaulay(b - a, 1, support_x)",
+                           "macaulay(a - b, b, support_x * a)",
+                           "macaulay(a - 2 * b, 0, support_x)",
+                           "macaulay(b - a, 3, 0)",
                            "exp(-sqr(a - b)) * sin(a) / (1 + b ^ 2)",
                            "support_x * a + 3"}) {
     check_derivatives(text, {1.3, 2.1, 0.7});

@@ -186,6 +186,7 @@ const std::vector<std::string> kTexts = {
     "a + b * x * skin + sqr(ring)",
     "exp(-skin * z) * (1 + 0.3 * sin(a * x + ring)) / (1 + b * sqr(y))",
     "if(x > 0.2, a * skin, b + ring * y) + max(a, skin) + pow(1 + a, b)",
+    "macaulay(x - a * y, 0, 0.5) + skin * macaulay(ring - b * z, 1, 0.2 + a)",
     "log(2 + skin) + atan2(ring, a) + abs(y - b) + tanh(skin * ring * x)"};
 
 TEST(PlaceField, HasTheDerivativesOfItsValues) {
