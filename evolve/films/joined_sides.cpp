@@ -1,15 +1,18 @@
 #include "evolve/films/joined_sides.h"
 
 #include <algorithm>
-#include <map>
+#include <limits>
 #include <set>
 #include <utility>
 
+#include "evolve/films/edge_marks.h"
 #include "evolve/films/shared_sides.h"
 
 namespace meniscus::films {
 
 namespace {
+
+constexpr double kMeets = 1e-4;  // x the curve's length
 
 bool has(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
@@ -31,6 +34,32 @@ std::vector<std::set<std::string>> users_of_curves(const FilmSystem& system) {
     }
   }
   return users;
+}
+
+JoinEnd nearest_end(const FilmSystem& system, int film, const Vec3& place) {
+  JoinEnd end{.film = film,
+              .place = place,
+              .distance = std::numeric_limits<double>::infinity()};
+  for (const FilmSpec& other : system.films) {
+    if (!has(system.films[static_cast<std::size_t>(film)].joins, other.name)) {
+      continue;
+    }
+    for (std::size_t c = 0; c < system.curves.size(); ++c) {
+      const curves::Curve& curve = system.curves[c];
+      if (!has(other.curves, curve.name)) {
+        continue;
+      }
+      const double t = nearest_parameter(curve.shape, place, 0.0);
+      const double off = (curves::point_at(curve.shape, t) - place).norm();
+      if (off < end.distance) {
+        end.curve = static_cast<int>(c);
+        end.t = t;
+        end.distance = off;
+        end.meets = off <= kMeets * curves::length_of(curve.shape);
+      }
+    }
+  }
+  return end;
 }
 
 }  // namespace
@@ -73,6 +102,29 @@ std::vector<JoinedSide> joined_sides(const FilmSystem& system) {
     }
   }
   return result;
+}
+
+std::vector<JoinEnd> join_ends(const FilmSystem& system) {
+  std::vector<JoinEnd> ends;
+  const std::vector<JoinedSide> joined = joined_sides(system);
+  if (joined.empty()) {
+    return ends;
+  }
+  const FreePlaces free(system.curves,
+                        std::vector<char>(system.curves.size(), 1));
+  for (const JoinedSide& side : joined) {
+    const std::vector<CurveSide> sides =
+        sides_of(system.curves[side.curve].shape);
+    const auto n = static_cast<int>(sides.size());
+    for (int k = side.side; k >= 0 && k <= side.side + 1; ++k) {
+      const int corner = k % n;
+      if (!free.is_free(side.curve, static_cast<double>(corner) / n)) {
+        ends.push_back(nearest_end(
+            system, side.film, sides[static_cast<std::size_t>(corner)].from));
+      }
+    }
+  }
+  return ends;
 }
 
 bool may_meet(const FilmSystem& system, int a, int b) {

@@ -17,6 +17,21 @@ struct JoinedSide {
 /// another film or a solid ends too: lines of a junction that has them all.
 std::vector<JoinedSide> joined_sides(const FilmSystem& system);
 
+/// A held corner at which a line begins or ends, and the nearest place where
+/// a film that is joined is held.
+struct JoinEnd {
+  int film = 0;           // that joins
+  Vec3 place;             // of the corner
+  int curve = -1;         // of the joined film, index; -1: it has none
+  double t = 0.0;         // on it
+  double distance = 0.0;  // [length]
+
+  /// Within 1e-4 of the curve's length.
+  bool meets = false;
+};
+
+std::vector<JoinEnd> join_ends(const FilmSystem& system);
+
 /// Do curves a and b (indices) belong to films of which one joins the other, or
 /// that both join others? They may meet.
 bool may_meet(const FilmSystem& system, int a, int b);

@@ -59,42 +59,9 @@ int film_number(const films::FilmSystem& system, const std::string& film) {
 std::map<int, std::vector<double>> cuts_for_joins(
     const films::FilmSystem& system) {
   std::map<int, std::vector<double>> cuts;
-  const std::vector<films::JoinedSide> joined = films::joined_sides(system);
-  if (joined.empty()) {
-    return cuts;
-  }
-  std::vector<char> used(system.curves.size(), 1);
-  const films::FreePlaces free(system.curves, used);
-  for (const films::JoinedSide& side : joined) {
-    const curves::Curve& own = system.curves[side.curve];
-    const std::vector<films::CurveSide> sides = films::sides_of(own.shape);
-    if (side.side < 0) {
-      continue;
-    }
-    const auto n = static_cast<int>(sides.size());
-    for (const int k : {side.side, (side.side + 1) % n}) {
-      if (free.is_free(side.curve, static_cast<double>(k) / n)) {
-        continue;
-      }
-      const Vec3& corner = sides[static_cast<std::size_t>(k)].from;
-      for (const std::string& name :
-           system.films[static_cast<std::size_t>(side.film)].joins) {
-        for (const std::string& curve_name :
-             system.films[film_number(system, name)].curves) {
-          const auto at = std::find_if(
-              system.curves.begin(), system.curves.end(),
-              [&](const curves::Curve& c) { return c.name == curve_name; });
-          if (at == system.curves.end()) {
-            continue;
-          }
-          const double t = films::nearest_parameter(at->shape, corner, 0.0);
-          const double size = curves::length_of(at->shape);
-          if ((curves::point_at(at->shape, t) - corner).norm() <=
-              kJoinReach * size) {
-            cuts[static_cast<int>(at - system.curves.begin())].push_back(t);
-          }
-        }
-      }
+  for (const films::JoinEnd& end : films::join_ends(system)) {
+    if (end.meets) {
+      cuts[end.curve].push_back(end.t);
     }
   }
   for (auto& [curve, at] : cuts) {
@@ -234,20 +201,6 @@ int FilmJoiner::label_for(int film, const Points& side) const {
   return best;
 }
 
-/// How far the nearest curve of a film is.
-double FilmJoiner::off_curves(int label, const Vec3& place) const {
-  double least = std::numeric_limits<double>::infinity();
-  const films::FilmSpec& film = system_.films[static_cast<std::size_t>(label)];
-  for (const curves::Curve& curve : system_.curves) {
-    if (std::count(film.curves.begin(), film.curves.end(), curve.name) > 0) {
-      const double t = films::nearest_parameter(curve.shape, place, 0.0);
-      least =
-          std::min(least, (curves::point_at(curve.shape, t) - place).norm());
-    }
-  }
-  return least;
-}
-
 /// The vertex of all these films at which a corner of `film` meets them.
 int FilmJoiner::corner_on(int film, const Corner& corner,
                           const std::vector<int>& labels) {
@@ -267,16 +220,13 @@ int FilmJoiner::corner_on(int film, const Corner& corner,
   const int found = nearest(there, corner.place);
   const std::string& name = system_.films[static_cast<std::size_t>(film)].name;
   const std::string& other = complex_.surfaces[labels.front()].name;
-  const double reach = kJoinReach * extent_of(complex_);
   if (corner.held &&
-      (found < 0 ||
-       (complex_.mesh.points[found] - corner.place).norm() > reach)) {
+      (found < 0 || (complex_.mesh.points[found] - corner.place).norm() >
+                        kJoinReach * extent_of(complex_))) {
     throw InvalidInput(fmt::format(
-        "film '{}' joins '{}' along a line that ends at {}, {:.4g} from the "
-        "nearest place where that film is held; let the line begin and end on "
-        "curves of '{}', or on another film that it joins, or be closed",
-        name, other, place_text(corner.place),
-        off_curves(labels.front(), corner.place), other));
+        "film '{}' joins '{}' along a line that ends at {}, where no curve "
+        "holds that film",
+        name, other, place_text(corner.place)));
   }
   if (found < 0) {
     throw InvalidInput(fmt::format(

@@ -52,7 +52,6 @@ class FilmJoiner {
   };
   std::vector<int> vertices_of(int label) const;
   int nearest(const std::vector<int>& vertices, const Vec3& place) const;
-  double off_curves(int label, const Vec3& place) const;
   int label_for(int film, const Points& side) const;
   int corner_on(int film, const Corner& corner, const std::vector<int>& labels);
   std::vector<int> chain(int film, int label, int from, int to,

@@ -514,6 +514,7 @@ EvaluatedCase evaluate(const Case& input, const VectorX& design,
     }
     check_sides(input, result.film_system, values);
     check_free_sides(input, result.film_system, values);
+    check_join_ends(input, result.film_system, design, problems);
     check_places(input, result, values);
     check_on_walls(input, result.film_system, values);
     check_symmetry(input, result, values);

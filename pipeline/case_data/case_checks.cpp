@@ -178,38 +178,6 @@ void check_free_curves(const Case& input, CaseProblems& problems) {
   }
 }
 
-/// Films that others end on, which must be there, and somewhere.
-void check_joins(const Case& input, CaseProblems& problems) {
-  std::vector<std::string> films;
-  for (const FilmEntry& film : input.films) {
-    films.push_back(film.spec.name);
-  }
-  for (const FilmEntry& film : input.films) {
-    for (const std::string& name : film.spec.joins) {
-      if (name == film.spec.name) {
-        problems.add(
-            film.line,
-            fmt::format("film '{}' joins itself; name another film", name));
-      } else if (std::find(films.begin(), films.end(), name) == films.end()) {
-        problems.unknown(film.line, "film", name, films);
-      }
-    }
-    const bool is_free = std::any_of(
-        input.curves.begin(), input.curves.end(), [&](const CurveEntry& c) {
-          return c.is_free_somewhere() &&
-                 std::find(film.spec.curves.begin(), film.spec.curves.end(),
-                           c.name) != film.spec.curves.end();
-        });
-    if (!film.spec.joins.empty() && !is_free) {
-      problems.add(film.line,
-                   fmt::format("film '{}' joins '{}', and all of its curves "
-                               "hold it; say of a curve free = true, or which "
-                               "of its sides are free (free = [1])",
-                               film.spec.name, film.spec.joins.front()));
-    }
-  }
-}
-
 /// What acts on a surface between two solid bodies acts within the part.
 void check_inner_surfaces(const Case& input, CaseProblems& problems) {
   std::map<std::string, std::vector<std::string>> solids;  // by surface
@@ -739,7 +707,6 @@ void check_case(const Case& input, CaseProblems& problems) {
     check_liquid(input, problems);
     check_use(input, problems);
     check_free_curves(input, problems);
-    check_joins(input, problems);
     check_wetted_walls(input, problems);
     check_inner_surfaces(input, problems);
     check_numbers(input, problems);
@@ -776,6 +743,37 @@ bool share(const std::vector<std::string>& a,
 }
 
 }  // namespace
+
+void check_joined_films(const Case& input, CaseProblems& problems) {
+  std::vector<std::string> films;
+  for (const FilmEntry& film : input.films) {
+    films.push_back(film.spec.name);
+  }
+  for (const FilmEntry& film : input.films) {
+    for (const std::string& name : film.spec.joins) {
+      if (name == film.spec.name) {
+        problems.add(
+            film.line,
+            fmt::format("film '{}' joins itself; name another film", name));
+      } else if (std::find(films.begin(), films.end(), name) == films.end()) {
+        problems.unknown(film.line, "film", name, films);
+      }
+    }
+    const bool is_free = std::any_of(
+        input.curves.begin(), input.curves.end(), [&](const CurveEntry& c) {
+          return c.is_free_somewhere() &&
+                 std::find(film.spec.curves.begin(), film.spec.curves.end(),
+                           c.name) != film.spec.curves.end();
+        });
+    if (!film.spec.joins.empty() && !is_free) {
+      problems.add(film.line,
+                   fmt::format("film '{}' joins '{}', and all of its curves "
+                               "hold it; say of a curve free = true, or which "
+                               "of its sides are free (free = [1])",
+                               film.spec.name, film.spec.joins.front()));
+    }
+  }
+}
 
 std::vector<std::string> wall_surface_names(const Case& input) {
   std::map<std::string, int> uses;  // of curves by films with walls

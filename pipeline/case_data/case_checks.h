@@ -27,6 +27,10 @@ void check_wetted_walls(const Case& input, CaseProblems& problems);
 /// ends of every design variable, and warnings of what serves nothing.
 void check_case(const Case& input, CaseProblems& problems);
 
+/// Tells of films that are joined and are not there, and of such that join with
+/// no free side.
+void check_joined_films(const Case& input, CaseProblems& problems);
+
 /// Films and solids that start from facets put onto their curves, at the
 /// initial design: rims that find no curve, bodies that stay open; features
 /// that overlap.

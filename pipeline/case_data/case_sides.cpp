@@ -1,14 +1,17 @@
 #include "pipeline/case_data/case_sides.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "evolve/films/joined_sides.h"
 #include "evolve/films/shared_sides.h"
 #include "pipeline/case_data/case_checks.h"
+#include "pipeline/case_data/case_curves.h"
 #include "pipeline/case_data/case_wetted.h"
 #include "pipeline/case_data/feature_shapes.h"
 
@@ -196,6 +199,52 @@ void check_free_sides(const Case& input, const films::FilmSystem& system,
             fmt::join(there, ", ")));
         break;
       }
+    }
+  }
+}
+
+void check_join_ends(const Case& input, const films::FilmSystem& system,
+                     const VectorX& design,
+                     std::vector<std::string>& problems) {
+  constexpr double kStays = 1e-5;  // of the curve's parameter
+  const std::vector<films::JoinEnd> ends = films::join_ends(system);
+  std::vector<films::JoinEnd> first;
+  const VectorX initial = initial_design(input);
+  if (!ends.empty() && design != initial) {
+    std::vector<std::string> of_first;
+    films::FilmSystem there = system;
+    const std::vector<curves::Curve> curves =
+        curves_of(input, CaseValues(input, initial, of_first));
+    for (std::size_t c = 0; c < curves.size() && of_first.empty(); ++c) {
+      there.curves[c].shape = curves[c].shape;
+    }
+    first = films::join_ends(there);
+  }
+  for (std::size_t k = 0; k < ends.size(); ++k) {
+    const films::JoinEnd& end = ends[k];
+    const FilmEntry& film = input.films[static_cast<std::size_t>(end.film)];
+    const std::string start =
+        fmt::format("{}: film '{}' joins {} along a line that ends at {}, ",
+                    place(input, film.line), film.spec.name,
+                    fmt::join(film.spec.joins, ", "), text(end.place));
+    if (!end.meets) {
+      problems.push_back(fmt::format(
+          "{}{:.4g} from the nearest place where that is held; let the line "
+          "begin and end on curves of the film that it joins, or on another "
+          "film, or be closed",
+          start, end.distance));
+      return;
+    }
+    const double moved = k < first.size() && first[k].curve == end.curve
+                             ? std::abs(end.t - first[k].t)
+                             : 0.0;
+    if (std::min(moved, 1.0 - moved) > kStays) {
+      problems.push_back(fmt::format(
+          "{}elsewhere along curve '{}' than at the initial design; models "
+          "keep its place there: move that curve with it, or freeze at this "
+          "design (--set)",
+          start, system.curves[static_cast<std::size_t>(end.curve)].name));
+      return;
     }
   }
 }

@@ -18,6 +18,12 @@ bool may_join_by_sides(const Case& input, const std::string& curve);
 void check_free_sides(const Case& input, const films::FilmSystem& system,
                       const CaseValues& values);
 
+/// Tells of films that join others along a line that ends where nothing holds
+/// these, or elsewhere along their curve than at the initial design: models
+/// keep its place there. `design`: that of `system`.
+void check_join_ends(const Case& input, const films::FilmSystem& system,
+                     const VectorX& design, std::vector<std::string>& problems);
+
 /// Tells of bodies whose faces leave a curve's side open, or meet there more
 /// than two at a time.
 void check_sides(const Case& input, const films::FilmSystem& system,

@@ -523,7 +523,7 @@ TEST(JoinedFilm, SaysWhereItCannotEnd) {
   films::FilmSystem amid = good;
   std::get<curves::Polygon>(amid.curves[1].shape).points[0] =
       Vec3(0, -0.6, 0.0);
-  EXPECT_NE(failure_of(amid).find("ends at (0, -0.6, 0), 0.4 from"),
+  EXPECT_NE(failure_of(amid).find("ends at (0, -0.6, 0), where no curve"),
             std::string::npos)
       << failure_of(amid);
   films::FilmSystem around = good;
