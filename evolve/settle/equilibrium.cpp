@@ -141,9 +141,9 @@ Vec3 restless_place(const energy::FilmEnergy& energy,
       energy.gradient(state.points, energy::targets_of(complex)), directions);
   const VectorX pressure = pressures_of(state.report);
   for (int b = 0; b < energy.functionals(); ++b) {
-    residual -= pressure[b] *
-                energy.along(energy.functional_gradient(state.points, b),
-                             directions);
+    residual -=
+        pressure[b] *
+        energy.along(energy.functional_gradient(state.points, b), directions);
   }
   Eigen::Index at = 0;
   residual.cwiseAbs().maxCoeff(&at);
