@@ -22,6 +22,7 @@
 #include "pipeline/forward/norm_peaks.h"
 #include "pipeline/forward/walls.h"
 #include "pipeline/results/export_part.h"
+#include "pipeline/results/multiplier_figures.h"
 #include "pipeline/results/run_files.h"
 #include "pipeline/store/refreeze.h"
 #include "pipeline/store/stored_case.h"
@@ -242,6 +243,9 @@ nlohmann::ordered_json result_json(const case_data::Case& input,
   for (const study::Constraint& c : result.constraints) {
     json["constraints"][c.name] = {
         {"value", c.value}, {"bound", c.bound}, {"satisfied", c.satisfied}};
+  }
+  if (result.multipliers) {
+    json["multipliers"] = multipliers_json(input, *result.multipliers);
   }
   if (result.sweep) {
     json["sweep"] = study::sweep_json(input, *result.sweep);
