@@ -1,12 +1,14 @@
 #include "evolve/walls/wall_films.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
 
 #include <Eigen/Geometry>
 
 #include "core/geometry/edge_key.h"
+#include "evolve/films/shared_sides.h"
 #include "evolve/walls/rim_shape.h"
 #include "evolve/walls/wall_reference.h"
 
@@ -109,6 +111,86 @@ std::vector<double> usual_thicknesses(const WallFilms& films,
   return result;
 }
 
+using SideName = std::pair<int, int>;  // curve, side
+
+/// The first curve's side that each of the others is.
+std::map<SideName, SideName> first_sides(
+    const std::vector<curves::Curve>& curves) {
+  std::map<SideName, SideName> first;
+  for (const films::SharedSide& side : films::shared_sides(curves)) {
+    const SideName known(side.first_curve, side.first_side);
+    const auto at = first.find(known);
+    first.emplace(SideName(side.second_curve, side.second_side),
+                  at == first.end() ? known : at->second);
+  }
+  return first;
+}
+
+/// A vertex belongs to one curve, a side to all that have it.
+std::vector<RimName> rim_names(const frozen::FilmModel& model,
+                               const films::FilmSystem& system,
+                               const Points& points) {
+  constexpr double kAtCorner = 1e-9;  // of a side, and of the size of all
+  const double reach = kAtCorner * bounding_diagonal(points);
+  const std::map<SideName, SideName> first = first_sides(system.curves);
+  const auto known = [&](const SideName& side) {
+    const auto at = first.find(side);
+    return at == first.end() ? side : at->second;
+  };
+  std::map<SideName, std::vector<int>> between;
+  std::vector<int> corners;
+  std::vector<std::vector<films::CurveSide>> sides;
+  for (std::size_t c = 0; c < system.curves.size(); ++c) {
+    const curves::Curve& curve = system.curves[c];
+    sides.push_back(films::sides_of(curve.shape));
+    const auto count = static_cast<double>(sides.back().size());
+    const std::vector<int> vertices = model.rim(curve.name);
+    const std::vector<double> t = model.rim_parameters(curve.name);
+    for (std::size_t k = 0; k < vertices.size(); ++k) {
+      const double at = count * t[k];
+      if (count > 0.0 && std::abs(at - std::round(at)) < kAtCorner) {
+        corners.push_back(vertices[k]);
+      } else {
+        between[known({static_cast<int>(c), static_cast<int>(at)})].push_back(
+            vertices[k]);
+      }
+    }
+  }
+  std::vector<RimName> names;
+  for (std::size_t c = 0; c < system.curves.size(); ++c) {
+    RimName name{.curve = system.curves[c].name, .holds = false};
+    for (const films::FilmSpec& film : system.films) {
+      if (std::find(film.curves.begin(), film.curves.end(), name.curve) !=
+          film.curves.end()) {
+        name.films.push_back(film.name);
+      }
+    }
+    const auto caps = system.caps;
+    name.holds =
+        !name.films.empty() ||
+        std::any_of(caps.begin(), caps.end(), [&](const auto& cap) {
+          const std::vector<std::string> held = cap.curves();
+          return std::find(held.begin(), held.end(), name.curve) != held.end();
+        });
+    for (std::size_t k = 0; k < std::max<std::size_t>(sides[c].size(), 1);
+         ++k) {
+      RimName side = name;
+      side.vertices =
+          between[known({static_cast<int>(c), static_cast<int>(k)})];
+      for (const int v : corners) {
+        const Vec3& x = points[static_cast<std::size_t>(v)];
+        if (k < sides[c].size() && ((x - sides[c][k].from).norm() <= reach ||
+                                    (x - sides[c][k].to).norm() <= reach)) {
+          side.vertices.push_back(v);
+        }
+      }
+      std::sort(side.vertices.begin(), side.vertices.end());
+      names.push_back(std::move(side));
+    }
+  }
+  return names;
+}
+
 }  // namespace
 
 WallFilms wall_films(const frozen::FilmModel& model,
@@ -142,6 +224,7 @@ WallFilms wall_films(const frozen::FilmModel& model,
     films.rims.push_back(
         {curve.name, model.rim(curve.name), model.rim_parameters(curve.name)});
   }
+  films.names = rim_names(model, system, points);
   films.planes = planes_of(model, system);
   films.asked =
       usual_thicknesses(films, on_films(walls, mesh, films.wall, films.rims));

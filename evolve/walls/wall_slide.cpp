@@ -44,8 +44,9 @@ std::vector<double> ways_from_held(const SlideInput& input) {
   return way;
 }
 
-/// Where the sheet ends, but for its junctions.
-void keep_to_rims(const SlideInput& input, Points& slides) {
+/// Directions of the rim where the sheet ends, but for its junctions; 0 of
+/// points inside.
+Points rim_directions(const SlideInput& input) {
   const Sheet& sheet = input.sheet;
   const Points& x = sheet.film.points;
   Points along(x.size(), Vec3::Zero());
@@ -60,10 +61,23 @@ void keep_to_rims(const SlideInput& input, Points& slides) {
     }
   }
   for (std::size_t v = 0; v < x.size(); ++v) {
-    const double squared = along[v].squaredNorm();
-    if (input.held[v] == 0 && squared > 0.0) {
-      slides[v] = along[v] * (along[v].dot(slides[v]) / squared);
+    along[v] = input.held[v] != 0 ? Vec3(Vec3::Zero()) : along[v].normalized();
+  }
+  return along;
+}
+
+/// Harmonic where `fixed` is 0, three columns a wall.
+void make_harmonic(HarmonicProblem& problem) {
+  problem.facets.clear();
+  for (std::size_t f = 0; f < problem.mesh.size(); ++f) {
+    const Triangle& t = problem.mesh[f];
+    if (std::any_of(t.begin(), t.end(),
+                    [&](int v) { return problem.fixed[v] == 0; })) {
+      problem.facets.push_back(static_cast<int>(f));
     }
+  }
+  if (!problem.facets.empty()) {
+    problem.values = harmonic(problem);
   }
 }
 
@@ -93,16 +107,22 @@ Slides slide(const SlideInput& input) {
       problem.fixed[v] = 0;
     }
   }
-  for (std::size_t f = 0; f < sheet.film.facets.size(); ++f) {
-    const Triangle& t = sheet.film.facets[f];
-    if (std::any_of(t.begin(), t.end(),
-                    [&](int v) { return problem.fixed[v] == 0; })) {
-      problem.facets.push_back(static_cast<int>(f));
+  make_harmonic(problem);
+  // Rims take what lies along them, and what is inside follows: else a narrow
+  // sheet would slide across its rim.
+  const Points along = rim_directions(input);
+  for (std::size_t v = 0; v < count; ++v) {
+    if (problem.fixed[v] != 0 || along[v].isZero(0.0)) {
+      continue;
     }
+    auto row = problem.values.row(static_cast<Eigen::Index>(v));
+    for (Eigen::Index first = 0; first < columns; first += 3) {
+      const Vec3 free = row.segment<3>(first).transpose();
+      row.segment<3>(first) = along[v].dot(free) * along[v].transpose();
+    }
+    problem.fixed[v] = 1;
   }
-  if (!problem.facets.empty()) {
-    problem.values = harmonic(problem);
-  }
+  make_harmonic(problem);
   column = 0;
   for (auto& [wall, slides] : result.by) {
     for (std::size_t v = 0; v < count; ++v) {
@@ -110,7 +130,6 @@ Slides slide(const SlideInput& input) {
           problem.values.block<1, 3>(static_cast<Eigen::Index>(v), column)
               .transpose();
     }
-    keep_to_rims(input, slides);
     column += 3;
   }
   return result;

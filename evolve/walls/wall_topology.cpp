@@ -142,11 +142,32 @@ class Builder {
     return rows;
   }
 
+  /// The name along an edge of the film, of those at one end: a curve that is a
+  /// name alone, one that holds the film, any other; none: empty.
+  std::string curve_along(const Edge& edge, const std::string& film,
+                          const std::vector<int>& at_end) const {
+    const auto rank = [&](const RimName& name) {
+      const bool own = std::find(name.films.begin(), name.films.end(), film) !=
+                       name.films.end();
+      return !name.holds ? 0 : own ? 1 : 2;
+    };
+    const RimName* best = nullptr;
+    for (const int n : at_end) {
+      const RimName& name = films_.names[n];
+      if (std::binary_search(name.vertices.begin(), name.vertices.end(),
+                             edge[1]) &&
+          (best == nullptr || rank(name) < rank(*best))) {
+        best = &name;
+      }
+    }
+    return best == nullptr ? "" : best->curve;
+  }
+
   void name_rims() {
-    std::map<int, std::vector<int>> curves;  // per film vertex
-    for (std::size_t r = 0; r < films_.rims.size(); ++r) {
-      for (const int v : films_.rims[r].vertices) {
-        curves[v].push_back(static_cast<int>(r));
+    std::map<int, std::vector<int>> at;  // names by film vertex
+    for (std::size_t n = 0; n < films_.names.size(); ++n) {
+      for (const int v : films_.names[n].vertices) {
+        at[v].push_back(static_cast<int>(n));
       }
     }
     std::map<int, int> unnamed;  // per group its number
@@ -159,14 +180,7 @@ class Builder {
             label_named(film + "/" + films_.planes.planes[plane].rim));
         continue;
       }
-      const std::vector<int>& there = curves[rim.film[1]];
-      std::string curve;
-      for (const int r : curves[rim.film[0]]) {
-        if (std::find(there.begin(), there.end(), r) != there.end()) {
-          curve = films_.rims[r].name;
-          break;
-        }
-      }
+      std::string curve = curve_along(rim.film, film, at[rim.film[0]]);
       if (curve.empty()) {
         const auto number = static_cast<int>(unnamed.size()) + 1;
         curve = std::to_string(

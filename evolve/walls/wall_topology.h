@@ -15,6 +15,14 @@
 
 namespace meniscus::walls {
 
+/// A smooth curve or a side of a polygon, by which rims are called.
+struct RimName {
+  std::string curve;
+  std::vector<std::string> films;  // that the curve holds
+  bool holds = true;               // a film or a solid; else it is a name alone
+  std::vector<int> vertices;       // all on it, ascending
+};
+
 /// Films with thickness, meshed coarsely; finer meshes are nested in that.
 struct WallFilms {
   SurfaceMesh mesh;           // facets of walls only; every point of the film
@@ -23,8 +31,9 @@ struct WallFilms {
   std::vector<double> asked;  // per wall: its usual thickness, sizes rims
   EdgeMiddles middles;        // of the nested refinements
   int levels = 0;             // how many of them
-  std::vector<WallRim> rims;  // curves, with all of their points
-  WallPlanes planes;          // on which the films slide
+  std::vector<WallRim> rims;  // curves, with their own points
+  std::vector<RimName> names;
+  WallPlanes planes;  // on which the films slide
 };
 
 /// A point of a wall.

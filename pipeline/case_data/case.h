@@ -1,6 +1,7 @@
 /// A case as its file says it, and the numbers that it comes to for one design.
 #pragma once
 
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,6 +19,10 @@ struct CaseFile {
   std::string path;  // as the case names it
   std::string text;  // its bytes
 };
+
+/// Names of curves that have a side in common at the initial design, each pair
+/// both ways.
+using CurvePairs = std::set<std::pair<std::string, std::string>>;
 
 struct Case {
   // Compiled once, in case.cpp: else in every source that holds one.
@@ -62,6 +67,7 @@ struct Case {
   AnalysisEntry analysis;
   StudyEntry study;
   std::vector<MergedCurves> merged;  // films and solids name the kept ones
+  CurvePairs sharing_sides;          // of a case with walls
   std::vector<std::string> remarks;  // "PATH:LINE: ...": how it was read
   /// Designs that a study's models were frozen at before the one at `initial`,
   /// in order: its film begins from theirs (pipeline/store/refreeze.h).

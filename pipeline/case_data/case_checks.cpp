@@ -99,6 +99,9 @@ void check_use(const Case& input, CaseProblems& problems) {
           input.curves[static_cast<std::size_t>(curve.copy.of)].name);
     }
   }
+  for (const auto& [curve, other] : input.sharing_sides) {
+    used_curves.insert(curve);  // it may name the rims of walls
+  }
   for (const CurveEntry& curve : input.curves) {
     if (used_curves.count(curve.name) == 0) {
       problems.warn(curve.line, fmt::format("curve '{}' holds no film or solid",
@@ -782,6 +785,7 @@ std::vector<std::string> wall_surface_names(const Case& input) {
       ++uses[curve];
     }
   }
+  const std::set<std::string> held = held_curves(input);
   std::vector<std::string> names;
   for (const WallEntry& wall : input.walls) {
     for (const FilmEntry& film : input.films) {
@@ -796,6 +800,12 @@ std::vector<std::string> wall_surface_names(const Case& input) {
             [&](const CurveEntry& c) { return c.free && c.name == curve; });
         if (uses[curve] == 1 && !is_free && !slides_at(input, curve)) {
           names.push_back(film.spec.name + "/rim:" + curve);
+        }
+        for (const CurveEntry& name : input.curves) {
+          if (!held.contains(name.name) &&
+              input.sharing_sides.contains({curve, name.name})) {
+            names.push_back(film.spec.name + "/rim:" + name.name);
+          }
         }
       }
       for (const CapEntry& cap : input.caps) {

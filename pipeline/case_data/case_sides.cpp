@@ -9,6 +9,7 @@
 #include <fmt/ranges.h>
 
 #include "evolve/films/joined_sides.h"
+#include "core/error.h"
 #include "evolve/films/shared_sides.h"
 #include "pipeline/case_data/case_checks.h"
 #include "pipeline/case_data/case_curves.h"
@@ -152,6 +153,25 @@ bool may_join_by_sides(const Case& input, const std::string& curve) {
     }
   }
   return sided.count(curve) != 0 && rims.size() > 2;
+}
+
+CurvePairs curves_that_share_sides(const Case& input) {
+  std::vector<std::string> problems;
+  std::vector<curves::Curve> curves;
+  try {
+    const VectorX design = initial_design(input);
+    const CaseValues values(input, design, problems);
+    curves = problems.empty() ? curves_of(input, values) : curves;
+  } catch (const Error&) {
+    return {};  // told when the case is checked
+  }
+  CurvePairs pairs;
+  for (const films::SharedSide& side : films::shared_sides(curves)) {
+    const std::string& first = curves[side.first_curve].name;
+    const std::string& second = curves[side.second_curve].name;
+    pairs.insert({{first, second}, {second, first}});
+  }
+  return pairs;
 }
 
 void check_free_sides(const Case& input, const films::FilmSystem& system,

@@ -13,6 +13,10 @@ namespace meniscus::case_data {
 /// wedge do.
 bool may_join_by_sides(const Case& input, const std::string& curve);
 
+/// Case::sharing_sides, of curves that were read without a problem; none where
+/// their numbers are not good.
+CurvePairs curves_that_share_sides(const Case& input);
+
 /// Tells of free sides of polygons and polylines where fewer than three films
 /// meet, or a solid's face.
 void check_free_sides(const Case& input, const films::FilmSystem& system,

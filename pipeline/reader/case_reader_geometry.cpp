@@ -7,6 +7,7 @@
 
 #include "pipeline/case_data/case_checks.h"
 #include "pipeline/case_data/case_curves.h"
+#include "pipeline/case_data/case_sides.h"
 #include "pipeline/case_data/case_symmetry.h"
 #include "pipeline/reader/case_reader_tables.h"
 
@@ -188,6 +189,9 @@ void read_geometry(CaseContext& context, const toml::table& root,
   read_solids(context, solids, result);
   if (context.problems.empty()) {
     case_data::merge_curves(result, context.problems);
+    if (root.contains("walls")) {
+      result.sharing_sides = case_data::curves_that_share_sides(result);
+    }
   }
   read_materials(context, root, result);
   const std::size_t before = context.problems.size();

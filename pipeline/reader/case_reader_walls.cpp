@@ -45,25 +45,30 @@ std::vector<std::string> wall_films(CaseContext& context,
 }
 
 bool meet(const case_data::Case& input, const case_data::WallEntry& a,
-          const case_data::WallEntry& b) {
+          const case_data::WallEntry& b, const case_data::CurvePairs& sharing) {
   const std::vector<std::string> there = case_data::curves_of_wall(input, b);
   const std::vector<std::string> here = case_data::curves_of_wall(input, a);
-  return std::any_of(here.begin(), here.end(), [&](const std::string& curve) {
-    return std::find(there.begin(), there.end(), curve) != there.end();
+  return std::any_of(here.begin(), here.end(), [&](const std::string& one) {
+    return std::any_of(there.begin(), there.end(),
+                       [&](const std::string& other) {
+                         return one == other || sharing.contains({one, other});
+                       });
   });
 }
 
-/// Walls whose films share a curve become one body, numbered by its first.
+/// Walls whose films share a curve, or a side of one, become one body, numbered
+/// by its first.
 void find_regions(CaseContext& context, case_data::Case& result) {
   std::vector<case_data::WallEntry>& walls = result.walls;
   for (std::size_t k = 0; k < walls.size(); ++k) {
     walls[k].region = static_cast<int>(k);
   }
+  const case_data::CurvePairs& sharing = result.sharing_sides;
   for (bool changed = true; changed;) {
     changed = false;
     for (case_data::WallEntry& a : walls) {
       for (const case_data::WallEntry& b : walls) {
-        if (b.region < a.region && meet(result, a, b)) {
+        if (b.region < a.region && meet(result, a, b, sharing)) {
           a.region = b.region;
           changed = true;
         }

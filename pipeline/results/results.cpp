@@ -22,11 +22,11 @@
 #include "pipeline/forward/norm_peaks.h"
 #include "pipeline/forward/walls.h"
 #include "pipeline/results/export_part.h"
+#include "pipeline/results/multiplier_figures.h"
 #include "pipeline/results/run_files.h"
 #include "pipeline/store/refreeze.h"
 #include "pipeline/store/stored_case.h"
 #include "pipeline/store/study_table.h"
-#include "pipeline/study/multiplier_figures.h"
 #include "pipeline/whole/whole_part.h"
 
 namespace meniscus::results {
@@ -245,7 +245,7 @@ nlohmann::ordered_json result_json(const case_data::Case& input,
         {"value", c.value}, {"bound", c.bound}, {"satisfied", c.satisfied}};
   }
   if (result.multipliers) {
-    json["multipliers"] = study::multipliers_json(input, *result.multipliers);
+    json["multipliers"] = multipliers_json(input, *result.multipliers);
   }
   if (result.sweep) {
     json["sweep"] = study::sweep_json(input, *result.sweep);

@@ -10,8 +10,8 @@
 #include "pipeline/case_data/study_kinds.h"
 #include "pipeline/forward/eigen_figures.h"
 #include "pipeline/forward/norm_peaks.h"
+#include "pipeline/results/multiplier_figures.h"
 #include "pipeline/results/results.h"
-#include "pipeline/study/multiplier_figures.h"
 
 namespace meniscus::results {
 
@@ -229,8 +229,7 @@ std::string result_text(const case_data::Case& input,
                 : constraint_text(input, input.study.constraints[k], c);
   }
   if (result.multipliers) {
-    text +=
-        study::multipliers_text(input, *result.multipliers, result.objective);
+    text += multipliers_text(input, *result.multipliers, result.objective);
   }
   for (const forward::NormPeak& peak :
        forward::norm_peaks(input, best.responses, result.stress)) {

@@ -16,6 +16,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 READER = ROOT / "tests/peers/freecad_step.py"
 CASES = ["two_arm", "two_arm_sized", "strut_family"]
 WALLS = ["torque_tube", "bracket_vs_solid", "h_beam_casting"]
+FILES = {"bracket_vs_solid": "skin.toml"}
 SETTINGS = ["--no-pictures", "--quiet"]
 ANALYSE = ["--set", "study.kind=analyse"]
 FACETS = 1e-2  # relative volume of a wall's facets, off its faces'
@@ -59,7 +60,7 @@ def main():
         folder = pathlib.Path(name)
         for case in CASES + WALLS:
             run = folder / case
-            path = ROOT / "cases" / case / "case.toml"
+            path = ROOT / "cases" / case / FILES.get(case, "case.toml")
             analyse = ANALYSE if "[study]" in path.read_text() else []
             call(program, "run", path, *SETTINGS, *analyse, "--out", run)
             step, stl = folder / f"{case}.step", folder / f"{case}.stl"

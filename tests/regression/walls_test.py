@@ -2,6 +2,7 @@
 """Walls from outside: a pipe with a bulkhead is run, differentiated, exported
 and refused where it must be."""
 import json
+import math
 import random
 import re
 import unittest
@@ -218,6 +219,145 @@ curves = ["far"]
                                       'material = "steel"\n',
                                       "thickness = 4\n"))
         self.expect(self.call("run", case), 2, r"case\.toml:\d+: .*material")
+
+
+# Four sides of plates, one with a door, and a plate over them with a brim that
+# is hardly wider than the walls are thick; the foot names what stands on it.
+STOOL = """title = "A stool"
+units = "mm-N-MPa"
+
+[curves.foot]
+kind = "polygon"
+points = [[0, 0, 0], [12, 0, 0], [28, 0, 0], [40, 0, 0], [40, 30, 0], [0, 30, 0]]
+
+[curves.front]
+kind = "polyline"
+points = [
+  [0, 0, 0], [12, 0, 0], { through = [20, 0, 25] }, [28, 0, 0], [40, 0, 0],
+  [40, 0, 40], [0, 0, 40],
+]
+
+[curves.back]
+kind = "polygon"
+points = [[0, 30, 0], [40, 30, 0], [40, 30, 40], [0, 30, 40]]
+
+[curves.left]
+kind = "polygon"
+points = [[0, 0, 0], [0, 30, 0], [0, 30, 40], [0, 0, 40]]
+
+[curves.right]
+kind = "polygon"
+points = [[40, 0, 0], [40, 30, 0], [40, 30, 40], [40, 0, 40]]
+
+[curves.head]
+kind = "polygon"
+points = [[0, 0, 40], [40, 0, 40], [40, 30, 40], [0, 30, 40]]
+
+[curves.rim]
+kind = "polygon"
+points = [[-4, -4, 40], [44, -4, 40], [44, 34, 40], [-4, 34, 40]]
+
+[films.front]
+kind = "disk"
+curves = ["front"]
+
+[films.back]
+kind = "disk"
+curves = ["back"]
+
+[films.left]
+kind = "disk"
+curves = ["left"]
+
+[films.right]
+kind = "disk"
+curves = ["right"]
+
+[films.lid]
+kind = "disk"
+curves = ["head"]
+
+[films.brim]
+kind = "disk"
+curves = ["rim", "head"]
+
+[walls.along]
+films = ["front", "back"]
+thickness = 3
+material = "steel"
+
+[walls.across]
+films = ["left", "right"]
+thickness = 3
+material = "steel"
+
+[walls.cover]
+films = ["lid", "brim"]
+thickness = 3
+material = "steel"
+
+[resolution]
+fea = 6
+film = 3
+
+[materials.steel]
+youngs_modulus = "210 GPa"
+poisson_ratio = 0.3
+density = "7850 kg/m3"
+
+[load_cases.sit]
+supports = [{ on = ["front/rim:foot", "back/rim:foot", "left/rim:foot", "right/rim:foot"], fix = "xyz" }]
+loads = [{ on = ["lid", "brim"], force = [0, 0, -1000] }]
+
+[responses.volume]
+kind = "volume"
+"""
+# Fillets of 1.5 mm along 280 mm of the lid's lines, cut across by facets.
+WITHIN = 0.02
+
+
+def areas(obj):
+    """Of the groups of an OBJ file."""
+    points, area, group = [], {}, ""
+    for line in obj.read_text().splitlines():
+        kind, *rest = line.split() or [""]
+        if kind == "v":
+            points.append([float(x) for x in rest])
+        elif kind == "g":
+            group = " ".join(rest)
+        elif kind == "f":
+            a, b, c = (points[int(k.split("/")[0]) - 1] for k in rest)
+            u = [q - p for p, q in zip(a, b)]
+            v = [q - p for p, q in zip(a, c)]
+            n = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
+                 u[0] * v[1] - u[1] * v[0]]
+            area[group] = area.get(group, 0.0) + math.hypot(*n) / 2
+    return area
+
+
+class Stool(ProgramTest):
+    def test_plates_that_share_sides_are_one_body_on_what_the_foot_names(self):
+        case = self.folder / "stool.toml"
+        case.write_text(STOOL)
+        out = self.folder / "stool"
+        done = self.call("run", case, "--no-pictures", "--no-report",
+                         "--export", "obj", "--out", out)
+        self.expect(done, 0)
+        self.assertNotIn("'foot'", done.stderr)  # it holds nothing, and names
+        radius = (8 ** 2 + 25 ** 2) / (2 * 25)  # of the door
+        door = (radius ** 2 * math.acos((radius - 25) / radius)
+                - (radius - 25) * 8)
+        volume = 3 * (48 * 38 + 140 * 38.5 - door)
+        found = self.result(out)["responses"]["volume"]
+        self.assertLess(abs(found / volume - 1), WITHIN)
+        area = areas(out / "part_3.obj")
+        rims = {name: a for name, a in area.items() if "/rim:" in name}
+        self.assertEqual(set(rims), {
+            "front/rim:foot", "front/rim:front", "back/rim:foot",
+            "left/rim:foot", "right/rim:foot", "brim/rim:rim"})
+        standing = sum(a for name, a in rims.items() if name.endswith(":foot"))
+        self.assertLess(abs(standing / (3 * (140 - 16)) - 1), WITHIN)
+        self.assertLess(abs(rims["brim/rim:rim"] / (3 * 172) - 1), WITHIN)
 
 
 if __name__ == "__main__":

@@ -91,9 +91,9 @@ def moved(text, replace):
     return text
 
 
-def not_closed(body, curve, advice):
-    return (r"case\.toml:{line}: body '%s' is not closed at curve '%s': .*%s"
-            % (body, curve, advice),)
+def not_closed(body, curve, advice, file="case"):
+    return (r"%s\.toml:{line}: body '%s' is not closed at curve '%s': .*%s"
+            % (file, body, curve, advice),)
 
 
 MEMBERS = "name,length,offset,tilt,load\n"
@@ -244,22 +244,24 @@ WRONG = {
     ],
     "bracket_vs_solid": [
         Harmless("the skin's two curves",
-                 {'["foot_rim", "pad_rim"]': '["pad_rim", "foot_rim"]'}),
+                 {'["foot_rim", "pad_rim"]': '["pad_rim", "foot_rim"]'},
+                 "skin.toml"),
         Wrong("swapped", "lid and mouth",
               {'kind = "disk"\ncurves = ["pad_rim"]':
                'kind = "disk"\ncurves = ["foot_rim"]',
                'kind = "cap"\ncurve = "foot_rim"':
                'kind = "cap"\ncurve = "pad_rim"'}, 2,
-              (r"case\.toml:{line}: there is no surface 'skin/rim:foot_rim'; "
-               r"did you mean 'skin/rim:pad_rim'",), "supports = ["),
+              (r"skin\.toml:{line}: there is no surface 'skin/rim:foot_rim'; "
+               r"did you mean 'skin/rim:pad_rim'",), "supports = [",
+              "check skin.toml"),
         Wrong("swapped", "two corners of the H",
               swapped('["back", "-rw", 0]', '["r2", "-rw", 0]'), 2,
               (r"plates\.toml:{line}: curve 'root': crosses or touches itself "
                r"near \(.*\)",), "[curves.root]", "check plates.toml"),
         Wrong("open", "the liquid without its mouth",
               {'["skin", "lid", "mouth"]': '["skin", "lid"]'}, 2,
-              not_closed("inside", "foot_rim", "add 'mouth' to"),
-              'enclosed_by = ["skin", "lid"]'),
+              not_closed("inside", "foot_rim", "add 'mouth' to", "skin"),
+              'enclosed_by = ["skin", "lid"]', "check skin.toml"),
         Wrong("open", "the plates without the column",
               {'"foot", "column", ': '"foot", '}, 2,
               (r"plates\.toml:{line}: body 'part' is not closed at the side "
@@ -275,10 +277,10 @@ WRONG = {
                       "--set head_width=50 "
                       "--set design.head_width.bounds=[20,60]"),
         Wrong("thick", "a wall that leaves no pad", {}, 2,
-              (r"case\.toml:{line}: curve 'pad_rim': corner_radius is 14, must "
+              (r"skin\.toml:{line}: curve 'pad_rim': corner_radius is 14, must "
                r"be 0 or more and below half the shorter side, 7 where .*"
                r"rim = 14",), "[curves.pad_rim]",
-              "check case.toml --set wall=30 "
+              "check skin.toml --set wall=30 "
               "--set design.wall.bounds=[3,40]"),
         Wrong("thick", "flanges that meet each other", {}, 2,
               (r"plates\.toml:{line}: curve 'root': points 2 and 3 are equal at "

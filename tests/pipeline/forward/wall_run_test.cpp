@@ -227,7 +227,7 @@ TEST(WallRuns, FollowTheirThickness) {
 // crease whose wall crosses itself; the film of first facets does not.
 TEST(WallRuns, AreFrozenAnewFromFirstFacetsWhereOthersMakeNoWall) {
   const case_data::Case input = reader::read_case(
-      MENISCUS_SOURCE_DIR "/cases/bracket_vs_solid/case.toml");
+      MENISCUS_SOURCE_DIR "/cases/bracket_vs_solid/skin.toml");
   const VectorX before{{-30.313908084589013, 54.0, 58.89485012386359,
                         1.1945374086781442, 3.5601666755839423,
                         5.940604597700847}};

@@ -1,4 +1,4 @@
-#include "pipeline/study/multiplier_figures.h"
+#include "pipeline/results/multiplier_figures.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 
 #include "pipeline/case_data/design_vectors.h"
 
-namespace meniscus::study {
+namespace meniscus::results {
 
 namespace {
 
@@ -18,8 +18,8 @@ using Json = nlohmann::ordered_json;
 using optimize::BindingBound;
 using optimize::BoundSide;
 
-constexpr double kPart = 0.01;         // of a bound
-constexpr double kPartOfUnit = 0.001;  // of a bound of 0
+constexpr double kGivesWay = 0.01;  // of a bound
+constexpr double kOfUnit = 0.001;   // of a bound of 0
 constexpr std::size_t kMostLines = 12;
 
 /// The name and the unit of what a bound is of.
@@ -40,8 +40,8 @@ Bounded bounded_by(const case_data::Case& input, const BindingBound& bound) {
 
 /// By what a bound gives way, signed.
 double step_of(const BindingBound& bound, const ShownUnit& shown) {
-  const double step = bound.bound == 0.0 ? kPartOfUnit / shown.factor
-                                         : kPart * std::abs(bound.bound);
+  const double step = bound.bound == 0.0 ? kOfUnit / shown.factor
+                                         : kGivesWay * std::abs(bound.bound);
   return bound.side == BoundSide::Lower ? -step : step;
 }
 
@@ -160,4 +160,4 @@ std::string multipliers_text(const case_data::Case& input,
   return text;
 }
 
-}  // namespace meniscus::study
+}  // namespace meniscus::results

@@ -8,7 +8,7 @@
 #include "optimize/multipliers.h"
 #include "pipeline/case_data/case.h"
 
-namespace meniscus::study {
+namespace meniscus::results {
 
 /// The part `multipliers` of result.json (docs/results.md).
 nlohmann::ordered_json multipliers_json(const case_data::Case& input,
@@ -22,4 +22,4 @@ std::string multipliers_text(const case_data::Case& input,
                              const optimize::Multipliers& found,
                              double objective);
 
-}  // namespace meniscus::study
+}  // namespace meniscus::results
