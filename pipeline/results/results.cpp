@@ -26,6 +26,7 @@
 #include "pipeline/store/refreeze.h"
 #include "pipeline/store/stored_case.h"
 #include "pipeline/store/study_table.h"
+#include "pipeline/store/topology_events.h"
 #include "pipeline/whole/whole_part.h"
 
 namespace meniscus::results {
@@ -180,6 +181,21 @@ Json refrozen_json(const case_data::Case& input,
   return json;
 }
 
+Json topology_json(const case_data::Case& input,
+                   const std::vector<store::TopologyEvent>& events) {
+  Json json = Json::array();
+  for (const store::TopologyEvent& event : events) {
+    json.push_back(
+        {{"kind", name_of(event.kind)},
+         {"designs", event.designs},
+         {"evaluation", event.evaluation},
+         {"parameters",
+          files::named_json(case_data::design_names(input), event.design)},
+         {"message", event.message}});
+  }
+  return json;
+}
+
 /// Which response each envelope has its value from.
 void add_envelopes(const case_data::Case& input, const VectorX& responses,
                    Json& json) {
@@ -291,6 +307,9 @@ nlohmann::ordered_json result_json(const case_data::Case& input,
   }
   if (!result.refrozen.empty()) {
     json["refrozen"] = refrozen_json(input, result.refrozen);
+  }
+  if (!result.topology.empty()) {
+    json["topology"] = topology_json(input, result.topology);
   }
   if (best != nullptr) {
     json["film"] = forward::film_json(best->film);

@@ -28,6 +28,10 @@ inline constexpr int kMostRefreezes = 10;
 /// How the database names a model: "frozen at evaluation 12".
 std::string refrozen_model(int evaluation);
 
+/// That of a sweep's designs at which films join in another way:
+/// "joined at evaluation 12". It answers for them alone.
+std::string rejoined_model(int evaluation);
+
 /// Of the case's own resolution: the first model, or one frozen later.
 bool is_study_model(const std::string& model);
 
@@ -35,8 +39,8 @@ bool is_study_model(const std::string& model);
 int count_of_model(const std::vector<EvaluationRecord>& records,
                    const std::string& model);
 
-/// The last of these models to begin; kStudyModel when none has evaluated a
-/// design. `answer`: of those that have evaluated it.
+/// The last of these models to begin that is no rejoined one; kStudyModel when
+/// none has evaluated a design. `answer`: of those that have evaluated it.
 std::string answering_model(const std::vector<EvaluationRecord>& records,
                             const std::optional<VectorX>& answer = {});
 

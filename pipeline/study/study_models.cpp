@@ -1,6 +1,8 @@
 #include "pipeline/study/study_models.h"
 
 #include <algorithm>
+#include <map>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -130,6 +132,94 @@ void StudyModels::conduct() {
   } while (refreeze());
   if (now_.stage->stopped_early()) {
     now_.stage->conduct();
+  }
+  sweep_rejoined();
+}
+
+/// A sweep whose case asks for pops.
+bool StudyModels::pops_on_the_way() const {
+  return input_.study.kind == case_data::StudyKind::Sweep &&
+         input_.study.refreeze && input_.resolution.pop;
+}
+
+void StudyModels::sweep_rejoined() {
+  const StudyOutcome& first = now_.stage->outcome();
+  if (!pops_on_the_way() || first.sweep->looked_at < first.sweep->designs) {
+    return;
+  }
+  std::vector<store::EvaluationRecord> records =
+      now_.stage->evaluator().evaluate_all(now_.stage->swept(), "sweep");
+  std::map<std::string, case_data::Case> frozen;  // by model
+  std::set<int> tried;
+  const auto rejoins = [&](const store::EvaluationRecord& record) {
+    return record.failure && record.failure->kind == FailureKind::FilmRejoins &&
+           tried.count(record.number) == 0;
+  };
+  for (int round = 0; round < store::kMostRefreezes; ++round) {
+    const auto at = std::find_if(records.begin(), records.end(), rejoins);
+    if (at == records.end()) {
+      break;
+    }
+    tried.insert(at->number);
+    store::Refreeze wanted{.evaluation = at->number,
+                           .design = at->inputs,
+                           .reason = "films join in another way there",
+                           .shift = {},
+                           .responses = {}};
+    log(fmt::format("a new model is frozen at evaluation {}: {}",
+                    wanted.evaluation, wanted.reason));
+    const std::string name = store::rejoined_model(wanted.evaluation);
+    const auto before = frozen.find(at->model);
+    const case_data::Case input = case_films::frozen_at(
+        before == frozen.end() ? case_ : before->second, wanted.design);
+    update_time_limit();
+    const std::unique_ptr<StudyStage> stage = stage_at(wanted, name, input);
+    if (stage == nullptr) {
+      continue;
+    }
+    std::vector<VectorX> designs;
+    std::vector<std::size_t> places;
+    for (std::size_t k = 0; k < records.size(); ++k) {
+      if (rejoins(records[k]) || records[k].inputs == wanted.design) {
+        designs.push_back(records[k].inputs);
+        places.push_back(k);
+      }
+    }
+    const std::vector<store::EvaluationRecord> found =
+        stage->evaluator().evaluate_all(designs, "sweep");
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      records[places[k]] = found[k];
+    }
+    earlier_seconds_ += stage->evaluator().seconds();
+    frozen.emplace(name, input);
+    refrozen_.push_back(std::move(wanted));
+  }
+  if (!frozen.empty()) {
+    take_swept(records, frozen);
+  }
+}
+
+/// The outcome of a sweep by what several models answered; its best design is
+/// put on a model of its own where it is of a later one.
+void StudyModels::take_swept(
+    const std::vector<store::EvaluationRecord>& records,
+    const std::map<std::string, case_data::Case>& frozen) {
+  StudyOutcome outcome = now_.stage->sum_up(records);
+  const auto best = std::find_if(
+      records.begin(), records.end(), [&](const store::EvaluationRecord& r) {
+        return !r.failure && r.inputs == outcome.best;
+      });
+  if (best == records.end() || frozen.count(best->model) == 0) {
+    now_.stage->leave(std::move(outcome));
+    return;
+  }
+  if (go_on_at({.evaluation = best->number,
+                .design = best->inputs,
+                .reason = "the answer on a mesh of its own",
+                .shift = {},
+                .responses = best->responses},
+               frozen.at(best->model))) {
+    now_.stage->judge(outcome, input_);
   }
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -32,6 +33,9 @@ class StudyModels {
   /// Conducts the stage, and on each new model where it has left the reach of
   /// the last.
   void conduct();
+  /// The designs of a sweep at which films join in another way, on models that
+  /// are frozen anew there, each for as many of them as it serves.
+  void sweep_rejoined();
   /// Goes on with a new model where the study has left the reach of the last;
   /// false when there is none.
   bool refreeze();
@@ -93,8 +97,11 @@ class StudyModels {
   double elapsed_seconds() const { return timer_.seconds(); }
 
  private:
+  bool pops_on_the_way() const;
   /// `from`: the case that its model is frozen of, but for the design.
   bool go_on_at(store::Refreeze wanted, const case_data::Case& from);
+  void take_swept(const std::vector<store::EvaluationRecord>& records,
+                  const std::map<std::string, case_data::Case>& frozen);
   void note_kept();
   std::unique_ptr<StudyStage> stage_at(const store::Refreeze& refreeze,
                                        const std::string& name,
