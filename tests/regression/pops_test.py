@@ -120,6 +120,18 @@ class Pops(ProgramTest):
                                (7.85e-9 * result["responses"]["area"]), 1,
                                delta=0.1)
 
+    # Lines keep their ends: on a plane of symmetry the film would open there.
+    def test_not_at_planes_that_lines_end_at(self):
+        half = plates(1) + """
+[symmetry]
+planes = [{ at = [0, 0, 15], normal = [0, 0, 1] }]
+"""
+        self.expect(self.call("evolve", self.case(half), "--out",
+                              self.folder / "half"), 1,
+                    r"film 'popped1', pulled from 'plate_\d', ends at a wall in "
+                    r"one point, \(.*, 15\).*draw that film, between two free "
+                    "lines")
+
     def test_gradients_are_exact(self):
         for seed in (2, 3):
             self.expect(self.call("check-gradient", self.case(plates(seed))), 0,

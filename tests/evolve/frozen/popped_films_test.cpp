@@ -122,9 +122,9 @@ TEST(PoppedFilms, OfFourPlatesAreTheShortestTree) {
     EXPECT_NEAR(popped.place.z(), kHigh / 2.0, 1.0);
     const SurfaceMesh mesh = model.fine_mesh(found.points);
     const double z = 0.497 * kHigh;
-    EXPECT_NEAR(cut_length(mesh, z, -1) / tree.length, 1.0, 2e-3);
+    EXPECT_NEAR(cut_length(mesh, z, -1) / tree.length, 1.0, 2e-5);
     EXPECT_NEAR(cut_length(mesh, z, mesh.label_of("popped1")) / tree.bridge,
-                1.0, 0.02);
+                1.0, 4e-3);
     // As before where nobody asks for it.
     system.pop = false;
     const frozen::FilmModel as_drawn =
