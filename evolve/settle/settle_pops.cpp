@@ -1,5 +1,6 @@
 #include "evolve/settle/settle_pops.h"
 
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
@@ -13,27 +14,25 @@ namespace {
 
 constexpr int kMostRounds = 12;  // a pop may run lines into each other anew
 
-/// Lines keep their ends: one that could slide apart on a wall is no rest.
-void check_ends(const films::FilmComplex& complex, FilmState& state) {
-  for (std::size_t f = 0; f < complex.mesh.facets.size() && !state.failure;
-       ++f) {
+/// Lines keep their ends: where a film that was pulled off has one on a wall,
+/// at which it would open; empty: nowhere.
+std::string end_on_wall(const films::FilmComplex& complex) {
+  for (std::size_t f = 0; f < complex.mesh.facets.size(); ++f) {
     const films::ComplexSurface& surface =
         complex.surfaces[complex.mesh.facet_label[f]];
-    for (const int v : surface.pulled_from.empty() ? Triangle{-1, -1, -1}
-                                                   : complex.mesh.facets[f]) {
-      if (v >= 0 && complex.vertices[v].constraints >= 0) {
+    for (const int v : complex.mesh.facets[f]) {
+      if (!surface.pulled_from.empty() &&
+          complex.vertices[v].constraints >= 0) {
         const Vec3& at = complex.mesh.points[v];
-        state.report.verdict = fmt::format(
-            "unstable: film '{}', pulled from '{}', ends at a wall in one "
-            "point, ({:.4g}, {:.4g}, {:.4g}), where it would open; pops keep "
-            "the ends of lines: draw that film, between two free lines",
-            surface.name, surface.pulled_from, at.x(), at.y(), at.z());
-        state.failure =
-            Failure{FailureKind::FilmUnstable, state.report.verdict};
-        return;
+        return fmt::format(
+            "the line where more than three films meet ends at a wall, at "
+            "({:.4g}, {:.4g}, {:.4g}), and pops keep the ends of lines: draw "
+            "the film that comes between, beside '{}', between two free lines",
+            at.x(), at.y(), at.z(), surface.pulled_from);
       }
     }
   }
+  return "";
 }
 
 }  // namespace
@@ -42,10 +41,17 @@ FilmState settle_pops(films::FilmComplex& complex, FilmState state,
                       const FindOptions& options) {
   for (int round = 0; round < kMostRounds && groom::unstable_junction(complex);
        ++round) {
-    const int lines = groom::pop_edges(complex).popped;
-    if (lines + groom::pop_vertices(complex).popped == 0) {
-      break;
+    films::FilmComplex popped = complex;
+    const int lines = groom::pop_edges(popped).popped;
+    if (lines + groom::pop_vertices(popped).popped == 0) {
+      return state;
     }
+    if (const std::string end = end_on_wall(popped); !end.empty()) {
+      state.report.verdict = "unstable: " + end;
+      state.failure = Failure{FailureKind::FilmUnstable, state.report.verdict};
+      return state;
+    }
+    complex = std::move(popped);
     const int before = state.report.iterations;
     // New films are narrower than an edge: they open first.
     state = find_equilibrium(complex, {.settle = options.settle});
@@ -55,9 +61,6 @@ FilmState settle_pops(films::FilmComplex& complex, FilmState state,
           {.edge = options.edge, .halvings = 0, .settle = options.settle});
     }
     state.report.iterations += before;
-  }
-  if (!state.failure) {
-    check_ends(complex, state);
   }
   return state;
 }
