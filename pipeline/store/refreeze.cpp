@@ -206,6 +206,22 @@ case_data::Case frozen_as_answered(case_data::Case input,
   return input;
 }
 
+std::optional<EvaluationRecord> rejoined_beside(
+    const case_data::Case& input, const std::vector<EvaluationRecord>& records,
+    const VectorX& best) {
+  std::optional<EvaluationRecord> nearest;
+  double least = kNear;
+  for (const EvaluationRecord& record : records) {
+    const double distance = design_distance(input, record.inputs, best);
+    if (record.failure && record.failure->kind == FailureKind::FilmRejoins &&
+        distance < least) {
+      nearest = record;
+      least = distance;
+    }
+  }
+  return nearest;
+}
+
 std::optional<Refreeze> find_refreeze(const FrozenStage& stage) {
   const auto best = std::find_if(stage.records.begin(), stage.records.end(),
                                  [&](const EvaluationRecord& record) {

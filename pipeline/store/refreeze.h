@@ -73,6 +73,12 @@ bool is_beyond_reach(const case_data::Case& input,
 /// Designs beyond reach, after which a search is ended early for a new model.
 inline constexpr int kMostBeyond = 6;
 
+/// Of the records that failed because films join in another way the one nearest
+/// to `best`, within a quarter of the ranges.
+std::optional<EvaluationRecord> rejoined_beside(
+    const case_data::Case& input, const std::vector<EvaluationRecord>& records,
+    const VectorX& best);
+
 /// Where the study should go on with a new model, shift not filled in: at its
 /// best design when the elements there have become flat, when so many designs
 /// were beyond reach, or when the search ended beside some that were. Where the

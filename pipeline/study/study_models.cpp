@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "pipeline/case_films/film_advice.h"
 #include "pipeline/case_films/film_start.h"
+#include "pipeline/store/incumbent.h"
 #include "pipeline/store/stored_case.h"
 #include "pipeline/study/held_margins.h"
 
@@ -126,6 +127,14 @@ bool StudyModels::may_refreeze() const {
 }
 
 void StudyModels::conduct() {
+  conduct_in_reach();
+  sweep_rejoined();
+  while (search_rejoined()) {
+  }
+}
+
+/// On the stage's model, and on new ones where it has left the reach of that.
+void StudyModels::conduct_in_reach() {
   using Leave = StudyStage::Leave;
   do {
     now_.stage->conduct(may_refreeze() ? Leave::Early : Leave::Late);
@@ -133,7 +142,6 @@ void StudyModels::conduct() {
   if (now_.stage->stopped_early()) {
     now_.stage->conduct();
   }
-  sweep_rejoined();
 }
 
 /// A sweep whose case asks for pops.
@@ -233,8 +241,9 @@ bool StudyModels::refreeze() {
   return wanted && go_on_at(*std::move(wanted), working());
 }
 
-bool StudyModels::go_on_at(store::Refreeze wanted,
-                           const case_data::Case& from) {
+/// A model frozen at a design of one frozen of `from`; its shift is filled in.
+std::optional<StudyModels::Model> StudyModels::model_at(
+    store::Refreeze& wanted, const case_data::Case& from) {
   log(fmt::format("a new model is frozen at evaluation {}: {}",
                   wanted.evaluation, wanted.reason));
   auto input = std::make_unique<case_data::Case>(
@@ -247,11 +256,21 @@ bool StudyModels::go_on_at(store::Refreeze wanted,
   std::unique_ptr<StudyStage> stage =
       stage_at(wanted, store::refrozen_model(wanted.evaluation), *input);
   if (stage == nullptr) {
+    return std::nullopt;
+  }
+  if (wanted.responses.size() > 0) {  // else that design has failed before
+    wanted.shift = stage->start().responses - wanted.responses;
+  }
+  return Model{.frozen = std::move(input), .stage = std::move(stage)};
+}
+
+bool StudyModels::go_on_at(store::Refreeze wanted,
+                           const case_data::Case& from) {
+  std::optional<Model> next = model_at(wanted, from);
+  if (!next) {
     return false;
   }
-  wanted.shift = stage->start().responses - wanted.responses;
-  Model left = std::exchange(
-      now_, Model{.frozen = std::move(input), .stage = std::move(stage)});
+  Model left = std::exchange(now_, *std::move(next));
   if (holds_margins(working())) {
     before_ = std::move(left);
   } else {
@@ -261,6 +280,62 @@ bool StudyModels::go_on_at(store::Refreeze wanted,
   refrozen_.push_back(std::move(wanted));
   note_kept();
   return true;
+}
+
+/// Of a minimum or a match, by what their outcomes have.
+bool StudyModels::is_better_than(const Model& other) const {
+  const auto record_of = [&](const StudyStage& stage) {
+    return store_.find(stage.model_name(), stage.outcome().best);
+  };
+  const auto own = record_of(*now_.stage);
+  const auto others = record_of(*other.stage);
+  if (!own || own->failure || !others || others->failure) {
+    return own && !own->failure;
+  }
+  return input_.study.objective
+             ? store::is_better(
+                   store::merit_of(input_.study, own->responses),
+                   store::merit_of(input_.study, others->responses))
+             : now_.stage->outcome().objective <
+                   other.stage->outcome().objective;
+}
+
+bool StudyModels::search_rejoined() {
+  const StudyOutcome& outcome = now_.stage->outcome();
+  if (!may_refreeze() || !input_.resolution.pop || outcome.ended_by_limit() ||
+      evaluations_left() <= 0) {
+    return false;
+  }
+  const std::optional<store::EvaluationRecord> beyond =
+      store::rejoined_beside(input_, now_.stage->records(), outcome.best);
+  if (!beyond) {
+    return false;
+  }
+  store::Refreeze wanted{
+      .evaluation = beyond->number,
+      .design = beyond->inputs,
+      .reason = "films join in another way there, beside the best design",
+      .shift = {},
+      .responses = {}};
+  std::optional<Model> next = model_at(wanted, working());
+  if (!next) {
+    return false;
+  }
+  const int spent = now_.stage->evaluations();
+  Model left = std::exchange(now_, *std::move(next));
+  earlier_evaluations_ += spent;
+  options_.start.reset();
+  refrozen_.push_back(std::move(wanted));
+  note_kept();
+  conduct_in_reach();
+  earlier_evaluations_ -= spent;
+  if (is_better_than(left)) {
+    end(std::move(left));
+    return true;
+  }
+  log("the films that are beyond are no better: the study stays before them");
+  end(std::exchange(now_, std::move(left)));
+  return false;
 }
 
 bool StudyModels::has_dragged_answer() const {

@@ -97,7 +97,20 @@ class StudyModels {
   double elapsed_seconds() const { return timer_.seconds(); }
 
  private:
+  /// A stage, and what its model is frozen of where that is not case_.
+  struct Model {
+    std::unique_ptr<case_data::Case> frozen;
+    std::unique_ptr<StudyStage> stage;
+  };
+  std::optional<Model> model_at(store::Refreeze& wanted,
+                                const case_data::Case& from);
+  bool is_better_than(const Model& other) const;
+  void conduct_in_reach();
   bool pops_on_the_way() const;
+  /// Goes on beyond designs at which films join in another way, where those
+  /// beside the best one are; false where there are none, or nothing better is
+  /// found.
+  bool search_rejoined();
   /// `from`: the case that its model is frozen of, but for the design.
   bool go_on_at(store::Refreeze wanted, const case_data::Case& from);
   void take_swept(const std::vector<store::EvaluationRecord>& records,
@@ -106,11 +119,6 @@ class StudyModels {
   std::unique_ptr<StudyStage> stage_at(const store::Refreeze& refreeze,
                                        const std::string& name,
                                        const case_data::Case& input);
-  /// A stage, and what its model is frozen of where that is not case_.
-  struct Model {
-    std::unique_ptr<case_data::Case> frozen;
-    std::unique_ptr<StudyStage> stage;
-  };
   struct KeptStart {
     case_data::Case frozen;  // what its model is frozen of
     store::Refreeze at;

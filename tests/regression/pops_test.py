@@ -186,6 +186,35 @@ planes = [{ at = [0, 0, 15], normal = [0, 0, 1] }]
         self.assertEqual(len(result["film"]["popped"]), 1)
         self.assertIn(len(result["refrozen"]), (1, 2))
 
+    # The least area is beyond the end of the bridge, where films join as on the
+    # other side of it.
+    def test_a_minimum_goes_on_with_the_films_beyond(self):
+        study = """
+[study]
+kind = "minimize"
+objective = "area"
+tolerance = 1e-3
+"""
+        fixed = plates(6, tall=60, high=16, wide=20, lean=0, least=5, most=23)
+        fixed = fixed.replace("[-10.0, 10.0]", "[0, 0]").replace(
+            "[0.8, 1.2]", "[1, 1]")
+        result = self.run_at(fixed + study, "beyond")
+        self.assertAlmostEqual(result["parameters"]["wide"], 5, delta=1e-3)
+        self.assertIn("films join in another way there, beside the best design",
+                      [r["reason"] for r in result["refrozen"]])
+        self.call("run", self.case(fixed + study + "refreeze = false\n"),
+                  "--out", self.folder / "stays", "--no-pictures",
+                  "--no-report")
+        stays = self.result(self.folder / "stays")
+        self.assertGreater(stays["parameters"]["wide"], 9)
+        self.expect(self.call("run", self.folder / "beyond.toml", "--out",
+                              self.folder / "beyond", "--resume",
+                              "--no-pictures", "--no-report"), 0)
+        again = self.result(self.folder / "beyond")
+        for key in ("parameters", "responses", "refrozen", "topology",
+                    "evaluations"):
+            self.assertEqual(again[key], result[key], key)
+
     def test_same_bits_for_any_thread_count(self):
         found = []
         for threads in ("1", "2"):
