@@ -501,19 +501,20 @@ std::optional<Failure> FilmModel::Impl::lines_that_meet(
   if (narrow.ratio > kRunTogether) {
     return std::nullopt;
   }
+  const bool whole = narrow.how == NarrowFilm::How::Whole;
+  const char* what = whole ? "film '{}' shrinks away"
+                     : narrow.how == NarrowFilm::How::AtItsRim
+                         ? "the line at which film '{}' ends runs into its rim"
+                         : "two lines of film '{}' run together";
   return Failure{
       FailureKind::FilmRejoins,
-      fmt::format(
-          "{} at ({:.4g}, {:.4g}, {:.4g}): {:.3g} of the way from the "
-          "model's design {} {:.3g}, of {:.3g} there; beyond, films "
-          "join in another way, as those of a model frozen there",
-          narrow.whole ? fmt::format("film '{}' shrinks away", narrow.film)
-                       : fmt::format("two lines of film '{}' run "
-                                     "together",
-                                     narrow.film),
-          narrow.place.x(), narrow.place.y(), narrow.place.z(), stands,
-          narrow.whole ? "the root of its area is" : "they are apart by",
-          narrow.width, narrow.usual)};
+      fmt::format("{} at ({:.4g}, {:.4g}, {:.4g}): {:.3g} of the way from the "
+                  "model's design {} {:.3g}, of {:.3g} there; beyond, films "
+                  "join in another way, as those of a model frozen there",
+                  fmt::format(fmt::runtime(what), narrow.film),
+                  narrow.place.x(), narrow.place.y(), narrow.place.z(), stands,
+                  whole ? "the root of its area is" : "they are apart by",
+                  narrow.width, narrow.usual)};
 }
 
 settle::FilmState FilmModel::Impl::settle_in_parts(

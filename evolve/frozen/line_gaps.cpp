@@ -98,13 +98,13 @@ LineGaps::LineGaps(const films::FilmComplex& reference) {
 
 LineGaps::Nearest LineGaps::nearest(const Film& film, std::size_t line,
                                     int vertex, const Points& points) {
-  Nearest found{std::numeric_limits<double>::infinity(), -1};
+  Nearest found{std::numeric_limits<double>::infinity(), -1, false};
   for (std::size_t other = 0; other < film.lines.size(); ++other) {
     for (const int w :
          other == line ? std::vector<int>() : film.lines[other].vertices) {
       const double distance = (points[w] - points[vertex]).norm();
       if (distance < found.distance) {
-        found = {distance, w};
+        found = {distance, w, film.lines[other].moves};
       }
     }
   }
@@ -116,12 +116,12 @@ NarrowFilm LineGaps::narrowest(const Points& points) const {
   for (const Film& film : films_) {
     const auto [size, middle] = size_of(film.facets, points);
     if (size / film.usual_size < least.ratio) {
-      least = {size / film.usual_size,
-               size,
-               film.usual_size,
-               true,
-               middle,
-               film.name};
+      least = {.how = NarrowFilm::How::Whole,
+               .ratio = size / film.usual_size,
+               .width = size,
+               .usual = film.usual_size,
+               .place = middle,
+               .film = film.name};
     }
     std::size_t next = 0;
     for (std::size_t l = 0; l < film.lines.size(); ++l) {
@@ -130,12 +130,13 @@ NarrowFilm LineGaps::narrowest(const Points& points) const {
         const double usual = film.usual[next++];
         const Nearest at = nearest(film, l, v, points);
         if (at.vertex >= 0 && at.distance / usual < least.ratio) {
-          least = {at.distance / usual,
-                   at.distance,
-                   usual,
-                   false,
-                   0.5 * (points[v] + points[at.vertex]),
-                   film.name};
+          least = {.how = at.moves ? NarrowFilm::How::BetweenLines
+                                   : NarrowFilm::How::AtItsRim,
+                   .ratio = at.distance / usual,
+                   .width = at.distance,
+                   .usual = usual,
+                   .place = 0.5 * (points[v] + points[at.vertex]),
+                   .film = film.name};
         }
       }
     }

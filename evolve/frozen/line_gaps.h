@@ -13,13 +13,14 @@ namespace meniscus::frozen {
 /// Where the films of a complex that lines bound are narrow, over what they
 /// were in the reference.
 struct NarrowFilm {
+  enum class How { BetweenLines, AtItsRim, Whole };
+  How how = How::Whole;
   double ratio = 1.0;  // of `width` and `usual`
-  double width = 0.0;  // between the lines, or of a film as a whole the root of
-                       // its area [length]
+  double width = 0.0;  // from a line to another or to the rim, of a film as a
+                       // whole the root of its area [length]
   double usual = 0.0;  // of the reference [length]
-  bool whole = false;  // the film shrinks as a whole
   Vec3 place = Vec3::Zero();
-  std::string film;  // between the lines
+  std::string film;
 };
 
 class LineGaps {
@@ -51,6 +52,7 @@ class LineGaps {
   struct Nearest {
     double distance;
     int vertex;
+    bool moves;
   };
   static Nearest nearest(const Film& film, std::size_t line, int vertex,
                          const Points& points);

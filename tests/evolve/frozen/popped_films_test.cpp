@@ -319,6 +319,31 @@ TEST(PoppedFilms, TellWhereFilmsJoinInAnotherWay) {
   }
 }
 
+// So does the third of three plates whose outer edge comes between those of the
+// others, where the angle to these becomes 120 degrees.
+TEST(PoppedFilms, TellWhereALineRunsIntoARim) {
+  const auto system = [](double x) {
+    films::FilmSystem plates = popped_films_test::plates(
+        {Plane(-10, 15), Plane(-10, -15), Plane(x, 0), Plane(x, 0)},
+        Plane(0.5, 0.3), 50.0);
+    plates.curves.pop_back();
+    plates.films.pop_back();
+    return plates;
+  };
+  const frozen::FilmModel model =
+      frozen::FilmModel::freeze(system(18.0), {.edge = 4.0, .refinements = 0});
+  ASSERT_FALSE(model.reference().failure);
+  EXPECT_TRUE(model.reference().report.popped.empty());
+  EXPECT_FALSE(model.settle(system(8.0)).failure);
+  // The line stands at -10 + 15 / sqrt(3), -1.3.
+  const settle::FilmState run = model.settle(system(-6.0));
+  ASSERT_TRUE(run.failure);
+  EXPECT_EQ(run.failure->kind, FailureKind::FilmRejoins)
+      << run.failure->message;
+  EXPECT_THAT(run.failure->message,
+              HasSubstr("the line at which film 'plate_3' ends runs into"));
+}
+
 // A film may fail for other reasons although it has lines.
 TEST(PoppedFilms, TellNothingOfLinesThatStayApart) {
   const auto rings = [](double half) {
