@@ -46,26 +46,30 @@ nlohmann::ordered_json film_json(const settle::FilmReport& film) {
   for (const settle::BodyState& body : film.bodies) {
     bodies[body.name] = {{"volume", body.volume}, {"pressure", body.pressure}};
   }
-  Json json = {{"vertices", film.vertices},
-               {"facets", film.facets},
-               {"energy", film.energy},
-               {"area", film.area},
-               {"residual", film.residual},
-               {"residual_bound", film.residual_bound},
-               {"min_eigenvalue", film.min_eigenvalue},
-               {"index", film.index},
-               {"index_at_least", film.index_at_least},
-               {"smallest_neck", film.smallest_neck},
-               {"neck_position",
-                {film.neck_position.x(), film.neck_position.y(),
-                 film.neck_position.z()}},
-               {"verdict", film.verdict},
-               {"bodies", bodies}};
+  return {{"vertices", film.vertices},
+          {"facets", film.facets},
+          {"energy", film.energy},
+          {"area", film.area},
+          {"residual", film.residual},
+          {"residual_bound", film.residual_bound},
+          {"min_eigenvalue", film.min_eigenvalue},
+          {"index", film.index},
+          {"index_at_least", film.index_at_least},
+          {"smallest_neck", film.smallest_neck},
+          {"neck_position",
+           {film.neck_position.x(), film.neck_position.y(),
+            film.neck_position.z()}},
+          {"verdict", film.verdict},
+          {"bodies", bodies}};
+}
+
+nlohmann::ordered_json popped_json(const settle::FilmReport& film) {
+  Json json = Json::array();
   for (const settle::PulledFilm& popped : film.popped) {
-    json["popped"].push_back({{"name", popped.name},
-                              {"pulled_from", popped.pulled_from},
-                              {"place", files::place_json(popped.place)},
-                              {"area", popped.area}});
+    json.push_back({{"name", popped.name},
+                    {"pulled_from", popped.pulled_from},
+                    {"place", files::place_json(popped.place)},
+                    {"area", popped.area}});
   }
   return json;
 }

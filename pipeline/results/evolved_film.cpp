@@ -131,6 +131,9 @@ void write_evolved_film(const EvolvedFilm& film,
     json["units"] = forward::units_json(*film.units);
   }
   json.update(forward::film_json(film.report));
+  if (!film.report.popped.empty()) {
+    json["popped"] = forward::popped_json(film.report);
+  }
   json["nesting"] = nesting_json(film.nesting);
   for (const auto& [name, value] : film.quantities) {
     json["quantities"][name] = value;

@@ -313,6 +313,9 @@ nlohmann::ordered_json result_json(const case_data::Case& input,
   }
   if (best != nullptr) {
     json["film"] = forward::film_json(best->film);
+    if (!best->film.popped.empty()) {
+      json["popped"] = forward::popped_json(best->film);
+    }
     json["tet"] = forward::tet_json(best->tet);
     json["fea"] = forward::fea_json(best->fea);
   }

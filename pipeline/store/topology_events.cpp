@@ -48,7 +48,8 @@ std::string event_text(const case_data::Case& input,
       event.designs, event.designs == 1 ? "" : "s", event.evaluation,
       case_data::design_text(input, event.design), event.message,
       event.kind == FailureKind::FilmRejoins && !input.resolution.pop
-          ? "; resolution.pop = true finds how"
+          ? "; drawn along one line there, films part anew by "
+            "resolution.pop = true"
           : "");
 }
 

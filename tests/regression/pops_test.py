@@ -7,6 +7,7 @@ import random
 import unittest
 
 from program import ProgramTest, without_seconds
+from results_test import documented
 
 # Four plates from the corners of a box, about an axis.
 PLATES = """title = "Four plates"
@@ -110,7 +111,8 @@ class Pops(ProgramTest):
         result = self.run_at(plates(1), "popped")
         film = result["film"]
         self.assertEqual((film["verdict"], film["index"]), ("stable", 0))
-        popped, = film["popped"]
+        popped, = result["popped"]
+        self.assertEqual(set(popped), documented()["popped"])
         self.assertEqual(popped["name"], "popped1")
         self.assertIn(popped["pulled_from"], [f"plate_{k}" for k in range(1, 5)])
         self.assertGreater(popped["area"], 30)
@@ -145,6 +147,7 @@ planes = [{ at = [0, 0, 15], normal = [0, 0, 1] }]
     def test_a_sweep_tells_where_films_join_in_another_way(self):
         result = self.sweep_at("told", "refreeze = false\n")
         event, = result["topology"]
+        self.assertEqual(set(event), documented()["topology"])
         self.assertEqual(event["kind"], "film_rejoins")
         self.assertEqual(event["designs"],
                          result["sweep"]["failures"]["film_rejoins"])
@@ -183,7 +186,7 @@ planes = [{ at = [0, 0, 15], normal = [0, 0, 1] }]
     def test_the_best_of_a_sweep_may_have_other_films(self):
         result = self.sweep_at("best", 'objective = "area"\n')
         self.assertEqual(result["parameters"]["wide"], 5)
-        self.assertEqual(len(result["film"]["popped"]), 1)
+        self.assertEqual(len(result["popped"]), 1)
         self.assertIn(len(result["refrozen"]), (1, 2))
 
     # The least area is beyond the end of the bridge, where films join as on the
