@@ -4,6 +4,7 @@ plates about an axis, drawn at random, as walls and between bodies; and designs
 at which films join in another way."""
 import json
 import random
+import re
 import unittest
 
 from program import ProgramTest, without_seconds
@@ -74,6 +75,105 @@ buckling = 0
 fea = {edge}
 {pop}
 """
+# The same between four bodies of one material, a pressure in the first.
+CELLS = """title = "Four cells"
+units = "mm-N-MPa"
+
+[design.wide]
+initial = {wide}
+bounds = [20.0, 40.0]
+
+[design.pull]
+initial = 1.0
+bounds = [0.8, 1.2]
+
+[design.blow]
+initial = {blow}
+bounds = [-0.01, 0.01]
+
+[parameters]
+tall = 30
+high = {high}
+
+[curves.plate]
+repeat = 4
+kind = "polygon"
+points = [[0, 0, 0], [0, 0, "tall"], {top}, {low}]
+free = [1]
+
+[curves.low]
+repeat = 4
+kind = "polygon"
+points = [[0, 0, 0], {low}, {next_low}]
+
+[curves.top]
+repeat = 4
+kind = "polygon"
+points = [[0, 0, "tall"], {top}, {next_top}]
+
+[curves.side]
+repeat = 4
+kind = "polygon"
+points = [{low}, {next_low}, {next_top}, {top}]
+
+[films.plate]
+repeat = 4
+kind = "disk"
+curves = ["plate_{{i}}"]
+tension = "pull"
+
+[solids.floor]
+repeat = 4
+kind = "cap"
+curve = "low_{{i}}"
+
+[solids.lid]
+repeat = 4
+kind = "cap"
+curve = "top_{{i}}"
+
+[solids.face]
+repeat = 4
+kind = "cap"
+curve = "side_{{i}}"
+
+[bodies.cell]
+repeat = 4
+enclosed_by = ["plate_{{i}}", "plate_{{i % 4 + 1}}", "floor_{{i}}", "lid_{{i}}", "face_{{i}}"]
+pressure = "if(i == 1, blow, 0)"
+material = "steel"
+
+[materials.steel]
+youngs_modulus = 210000
+poisson_ratio = 0.3
+density = "7850 kg/m^3"
+
+[load_cases.service]
+supports = [{{ on = "floor_1", fix = "xyz" }}, {{ on = "floor_3", fix = "xyz" }}]
+loads = [{{ on = "lid_2", force = [100, 0, -50] }}]
+
+[responses.mass]
+kind = "mass"
+
+[responses.area]
+kind = "film_area"
+
+[responses.stiff]
+kind = "compliance"
+load_case = "service"
+
+[responses.sway]
+kind = "mean_displacement"
+on = "lid_3"
+direction = [1, 0, 0]
+
+[analysis]
+buckling = 0
+
+[resolution]
+fea = 4
+pop = true
+"""
 POP = "pop = true"
 SWEEP = """
 [study]
@@ -89,6 +189,20 @@ def plates(seed, **changed):
                "lean": draw.uniform(-2, 2), "tall": 30, "edge": 4, "pop": POP,
                "least": 5, "most": 60}
     return PLATES.format(**{**numbers, **changed})
+
+
+def cells(seed):
+    draw = random.Random(seed)
+    corner = ["wide / 2 * if(i == 1, 1, if(i == 4, 1, -1))",
+              "high / 2 * if(i < 3, 1, -1)"]
+    following = ["wide / 2 * if(i == 4, 1, if(i == 3, 1, -1))",
+                 "high / 2 * if(i == 4, 1, if(i == 1, 1, -1))"]
+    return CELLS.format(wide=draw.uniform(24, 30), high=draw.uniform(14, 18),
+                        blow=draw.uniform(-0.006, 0.006),
+                        low=json.dumps([*corner, 0]),
+                        top=json.dumps([*corner, "tall"]),
+                        next_low=json.dumps([*following, 0]),
+                        next_top=json.dumps([*following, "tall"]))
 
 
 class Pops(ProgramTest):
@@ -217,6 +331,21 @@ tolerance = 1e-3
         for key in ("parameters", "responses", "refrozen", "topology",
                     "evaluations"):
             self.assertEqual(again[key], result[key], key)
+
+    def test_between_bodies(self):
+        for seed in (7, 8):
+            text = cells(seed)
+            result = self.run_at(text, f"cells_{seed}")
+            self.assertEqual(len(result["popped"]), 1)
+            wide = result["parameters"]["wide"]
+            high = float(re.search(r"^high = (\S+)", text, re.M).group(1))
+            # Together they fill their box.
+            self.assertAlmostEqual(
+                result["responses"]["mass"] / (7.85e-9 * wide * high * 30), 1,
+                delta=1e-9)
+            self.expect(self.call("check-gradient",
+                                  self.folder / f"cells_{seed}.toml"), 0,
+                        "all 12 derivatives agree")
 
     def test_same_bits_for_any_thread_count(self):
         found = []
