@@ -641,8 +641,8 @@ FilmModel FilmModel::finish(std::unique_ptr<Impl> impl,
     model.impl_->usual_neck = model.impl_->reference.report.smallest_neck;
     model.impl_->reference = model.settle(initial, settle);
     model.impl_->lead_lines(initial);
-    if (LineGaps gaps(model.impl_->complex); gaps.any()) {
-      model.impl_->gaps.emplace(std::move(gaps));
+    if (!model.impl_->carry->lines().empty()) {
+      model.impl_->gaps.emplace(model.impl_->complex);
     }
   } else if (model.impl_->reference.points.size() !=
              model.impl_->complex.mesh.points.size()) {

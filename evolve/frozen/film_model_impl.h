@@ -26,7 +26,7 @@ struct FilmModel::Impl {
   std::optional<energy::FilmEnergy> energy;
   std::optional<Carry> carry;
   std::unique_ptr<const LineLead> lead;  // null: no lines that move
-  std::optional<LineGaps> gaps;          // of the reference
+  std::optional<LineGaps> gaps;          // of the reference, where it has lines
   films::FilmTargets targets;
   settle::FilmState reference;
   double usual_neck = 0.0;    // of the reference [length]

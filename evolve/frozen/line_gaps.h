@@ -27,11 +27,8 @@ class LineGaps {
  public:
   explicit LineGaps(const films::FilmComplex& reference);
 
-  /// False where no three films meet along a line.
-  bool any() const { return !films_.empty(); }
-
-  /// The smallest ratio at `points`, the first of equals. O(n^2) of the lines'
-  /// vertices.
+  /// The smallest ratio at `points`, the first of equals; infinite without
+  /// lines. O(n^2) of the lines' vertices.
   NarrowFilm narrowest(const Points& points) const;
 
  private:
