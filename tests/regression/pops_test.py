@@ -332,6 +332,19 @@ tolerance = 1e-3
                     "evaluations"):
             self.assertEqual(again[key], result[key], key)
 
+    def test_a_match_finds_its_target_beyond(self):
+        text = plates(6, tall=60, high=16, wide=20, lean=0, least=5, most=23)
+        text = text.replace("[-10.0, 10.0]", "[0, 0]").replace(
+            "[0.8, 1.2]", "[1, 1]")
+        result = self.run_at(text + """
+[study]
+kind = "match"
+targets = { area = 1700 }
+""", "match")
+        self.assertEqual(result["status"], "converged")
+        self.assertLess(result["parameters"]["wide"], 9)
+        self.assertAlmostEqual(result["responses"]["area"], 1700, delta=2)
+
     def test_between_bodies(self):
         for seed in (7, 8):
             text = cells(seed)
