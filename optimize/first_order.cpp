@@ -176,6 +176,7 @@ FirstOrderReport first_order(const FirstOrderInput& input) {
   FirstOrderReport report;
   // Largest entries of both sums: stationarity and complementarity. Back to
   // the given units; a lower side counts with the other sign.
+  report.unit = unit;
   report.violation = violation_of(input);
   report.multipliers = VectorX::Zero(input.constraint_scale.size());
   report.bound_multipliers = VectorX::Zero(n);

@@ -34,6 +34,7 @@ struct FirstOrderReport {
   double stationarity = 0.0;     // its first part
   double complementarity = 0.0;  // its second part
   double violation = 0.0;        // largest, in constraint scales
+  double unit = 1.0;  // the objective's scale that the residual is over, > 0
   /// m of grad f + sum m_i grad c_i = 0 for the constraints: positive where an
   /// upper bound holds the objective up, negative where a lower one does;
   /// d minimum / d bound = -m [objective's unit / constraint's unit].

@@ -77,6 +77,7 @@ struct ConstraintState {
   double value = 0.0;
   double lower = 0.0;
   double upper = 0.0;
+  double scale = 1.0;      // as in ResponseBounds
   double violation = 0.0;  // [scales], 0 when kept
   bool satisfied = false;  // violation <= feasibility_tolerance
   /// As in FirstOrderReport; NaN when no derivatives are known.

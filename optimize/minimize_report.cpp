@@ -42,6 +42,7 @@ void fill_constraints(const MinimizeEvaluator& evaluator,
     for (const ConstraintSide& side : evaluator.sides()) {
       if (side.row == row + 1) {
         const double value = side.value(report.values);
+        state.scale = side.scale;
         state.violation =
             std::max(state.violation, side.equation ? std::abs(value) : value);
       }

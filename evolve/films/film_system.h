@@ -43,6 +43,9 @@ struct FilmSpec {
   DropShape drop_shape;                      // of a tension that turns
   std::shared_ptr<const StartFacets> start;  // of Facets
   double within = 0.0;  // its rims may be so far off their curves [length]
+  /// Films that it ends on along the free sides of its curves, wherever that
+  /// is (evolve/films/joined_sides.h).
+  std::vector<std::string> joins = {};
 };
 
 /// A plane, cylinder, sphere or cone that films slide on where their curves lie

@@ -158,6 +158,27 @@ std::vector<PulledFilm> popped_films(const films::FilmComplex& complex,
   return result;
 }
 
+namespace {
+
+/// Where the film is farthest from rest, by the vertices' residuals.
+Vec3 restless_place(const energy::FilmEnergy& energy,
+                    const films::FilmComplex& complex, const FilmState& state) {
+  const Points directions = energy.space().directions(state.points);
+  VectorX residual = energy.along(
+      energy.gradient(state.points, energy::targets_of(complex)), directions);
+  const VectorX pressure = pressures_of(state.report);
+  for (int b = 0; b < energy.functionals(); ++b) {
+    residual -= pressure[b] *
+                energy.along(energy.functional_gradient(state.points, b),
+                             directions);
+  }
+  Eigen::Index at = 0;
+  residual.cwiseAbs().maxCoeff(&at);
+  return state.points[energy.vertices()[static_cast<std::size_t>(at)]];
+}
+
+}  // namespace
+
 void set_verdict(const energy::FilmEnergy& energy,
                  const films::FilmComplex& complex, const VerdictInput& input,
                  FilmState& state) {
@@ -200,9 +221,14 @@ void set_verdict(const energy::FilmEnergy& energy,
   } else if (!reason.empty()) {
     fail(FailureKind::FilmNotFound,
          fmt::format("no equilibrium of this topology found after {} steps "
-                     "({}; residual {:.3g}, bound {:.3g}); {}",
+                     "({}; residual {:.3g}, bound {:.3g}{}); {}",
                      report.iterations, reason, report.residual,
-                     report.residual_bound, where));
+                     report.residual_bound,
+                     finite && energy.unknowns() > 0
+                         ? ", largest at " +
+                               place(restless_place(energy, complex, state))
+                         : "",
+                     where));
   } else if (report.index > 0) {
     fail(FailureKind::FilmUnstable,
          fmt::format("unstable: index {}, lowest eigenvalue {:.4g}, its mode "

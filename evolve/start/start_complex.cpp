@@ -30,6 +30,7 @@
 #include "evolve/start/face_loops.h"
 #include "evolve/start/facet_start.h"
 #include "evolve/start/fill_patch.h"
+#include "evolve/start/join_films.h"
 #include "evolve/start/raise_disks.h"
 #include "evolve/start/solid_start.h"
 #include "evolve/start/wetted_faces.h"
@@ -51,7 +52,8 @@ class StartBuilder {
       : system_(with_rims_apart(system, edge)),
         edge_(edge),
         shared_(system_.curves),
-        solids_(system_, edge) {}
+        solids_(system_, edge),
+        join_cuts_(cuts_for_joins(system_)) {}
 
   films::FilmComplex build() {
     check_names();
@@ -69,8 +71,12 @@ class StartBuilder {
     const films::FreePlaces free = free_places();
     shared_.mark_edges(free, result_);
     for (const films::FilmSpec& film : system_.films) {
-      add_film(film);
+      declare_film(film);
+      if (film.joins.empty()) {
+        add_film(film);
+      }
     }
+    add_joining_films();
     for (const films::CapSpec& cap : system_.caps) {
       add_cap(cap);
     }
@@ -79,6 +85,9 @@ class StartBuilder {
     add_bodies(raised);
     add_walls();
     free_lines(free);
+    if (films_join_) {
+      drop_unused(result_);  // rims in whose place lines are
+    }
     std::vector<films::FilmQuantity> poles = poles_of_bodies();
     cut_start(system_, edge_, result_);
     if (has_cuts(system_)) {
@@ -251,7 +260,13 @@ class StartBuilder {
     try {
       const std::vector<double> t =
           curves::sample_parameters(curve.shape, curve.fineness * edge_);
-      const std::vector<double> cuts = cuts_of(system_, curve);
+      std::vector<double> cuts = cuts_of(system_, curve);
+      if (const auto more =
+              join_cuts_.find(static_cast<int>(&curve - system_.curves.data()));
+          more != join_cuts_.end()) {
+        cuts.insert(cuts.end(), more->second.begin(), more->second.end());
+        std::sort(cuts.begin(), cuts.end());
+      }
       return cuts.empty() ? t : curves::with_parameters(curve.shape, t, cuts);
     } catch (const InvalidInput& error) {
       throw InvalidInput(
@@ -279,7 +294,7 @@ class StartBuilder {
     result_.mesh.facet_label.push_back(label);
   }
 
-  void add_film(const films::FilmSpec& film) {
+  void declare_film(const films::FilmSpec& film) {
     const int label = add_surface(
         {film.name, true, film.tension, film.tension_field, film.drop_shape});
     if (film.tension_field) {
@@ -292,6 +307,10 @@ class StartBuilder {
                                        film.name, name));
       }
     }
+  }
+
+  void add_film(const films::FilmSpec& film) {
+    const int label = result_.mesh.label_of(film.name);
     switch (film.kind) {
       case films::FilmKind::Branch:
         add_branch(film, label);
@@ -308,6 +327,59 @@ class StartBuilder {
       case films::FilmKind::Spines:
         add_spined(film, label);
         break;
+    }
+  }
+
+  /// Those that end on others, after these.
+  void add_joining_films() {
+    FilmJoiner joiner(system_, edge_, result_);
+    std::set<std::string> missing;
+    for (const films::FilmSpec& film : system_.films) {
+      if (!film.joins.empty()) {
+        missing.insert(film.name);
+      }
+    }
+    films_join_ = !missing.empty();
+    if (!films_join_) {
+      return;
+    }
+    for (const films::JoinedSide& side : films::joined_sides(system_)) {
+      joiner.find_corners(side.curve,
+                          rims_.at(system_.curves[side.curve].name).ids);
+    }
+    joiner.refine_joined();
+    while (!missing.empty()) {
+      const std::size_t before = missing.size();
+      for (std::size_t f = 0; f < system_.films.size(); ++f) {
+        const films::FilmSpec& film = system_.films[f];
+        const bool ready = std::none_of(
+            film.joins.begin(), film.joins.end(),
+            [&](const auto& name) { return missing.count(name) > 0; });
+        if (ready && missing.erase(film.name) > 0) {
+          join(static_cast<int>(f), joiner);
+          add_film(film);
+        }
+      }
+      if (missing.size() == before) {
+        throw InvalidInput(fmt::format(
+            "film '{}' joins films that join it; let one of them have curves "
+            "of its own there",
+            *missing.begin()));
+      }
+    }
+  }
+
+  void join(int film, FilmJoiner& joiner) {
+    for (const std::string& name : system_.films[film].curves) {
+      Rim& rim = rims_.at(name);
+      rim.ids =
+          joiner.join_rim(film, rim.curve, rim.ids, !shared_.shares(rim.curve));
+    }
+    for (auto& [name, rim] : rims_) {
+      for (int& id : rim.ids) {
+        const auto at = joiner.replaced().find(id);
+        id = at == joiner.replaced().end() ? id : at->second;
+      }
     }
   }
 
@@ -749,6 +821,8 @@ class StartBuilder {
   SolidStart solids_;
   FacetStart facets_;
   std::vector<int> facet_points_;  // ids of its points; -1: not yet
+  std::map<int, std::vector<double>> join_cuts_;  // by curve
+  bool films_join_ = false;
 };
 
 void StartBuilder::add_branch(const films::FilmSpec& film, int label) {

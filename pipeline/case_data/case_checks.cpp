@@ -131,14 +131,22 @@ void check_free_curves(const Case& input, CaseProblems& problems) {
     const auto films = std::count_if(
         input.films.begin(), input.films.end(),
         [&](const FilmEntry& film) { return names_it(film.spec.curves); });
+    const bool joins =
+        films == 1 && std::any_of(input.films.begin(), input.films.end(),
+                                  [&](const FilmEntry& film) {
+                                    return names_it(film.spec.curves) &&
+                                           !film.spec.joins.empty();
+                                  });
     const bool has_sides =
         curve.kind == CurveKind::Polygon || curve.kind == CurveKind::Polyline;
-    if (films < 3 && !has_sides) {  // of sides with others', by their places
+    if (films < 3 && !has_sides &&
+        !joins) {  // of sides with others', by their places
       problems.add(
           curve.line,
           fmt::format("curve '{}' is free and {} film{} there; lines "
                       "balance where three films or more meet: let "
-                      "more end there, or hold it (free = false)",
+                      "more end there, name the film that it joins (joins = "
+                      "[\"FILM\"]), or hold it (free = false)",
                       curve.name, films, films == 1 ? " ends" : "s end"));
     }
     if (curve.pieces > 0.0) {
@@ -166,6 +174,38 @@ void check_free_curves(const Case& input, CaseProblems& problems) {
                                  "own; walls have a fillet of theirs",
                                  fillet.name, curve.name));
       }
+    }
+  }
+}
+
+/// Films that others end on, which must be there, and somewhere.
+void check_joins(const Case& input, CaseProblems& problems) {
+  std::vector<std::string> films;
+  for (const FilmEntry& film : input.films) {
+    films.push_back(film.spec.name);
+  }
+  for (const FilmEntry& film : input.films) {
+    for (const std::string& name : film.spec.joins) {
+      if (name == film.spec.name) {
+        problems.add(
+            film.line,
+            fmt::format("film '{}' joins itself; name another film", name));
+      } else if (std::find(films.begin(), films.end(), name) == films.end()) {
+        problems.unknown(film.line, "film", name, films);
+      }
+    }
+    const bool is_free = std::any_of(
+        input.curves.begin(), input.curves.end(), [&](const CurveEntry& c) {
+          return c.is_free_somewhere() &&
+                 std::find(film.spec.curves.begin(), film.spec.curves.end(),
+                           c.name) != film.spec.curves.end();
+        });
+    if (!film.spec.joins.empty() && !is_free) {
+      problems.add(film.line,
+                   fmt::format("film '{}' joins '{}', and all of its curves "
+                               "hold it; say of a curve free = true, or which "
+                               "of its sides are free (free = [1])",
+                               film.spec.name, film.spec.joins.front()));
     }
   }
 }
@@ -699,6 +739,7 @@ void check_case(const Case& input, CaseProblems& problems) {
     check_liquid(input, problems);
     check_use(input, problems);
     check_free_curves(input, problems);
+    check_joins(input, problems);
     check_wetted_walls(input, problems);
     check_inner_surfaces(input, problems);
     check_numbers(input, problems);

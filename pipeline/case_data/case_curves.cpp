@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/geometry/surface_mesh.h"
 #include "evolve/curves/curve_contact.h"
+#include "evolve/films/joined_sides.h"
 #include "evolve/films/shared_sides.h"
 #include "evolve/start/disk_fill.h"
 #include "pipeline/case_data/case_features.h"
@@ -253,6 +254,9 @@ void check_meetings(const Case& input, const films::FilmSystem& system,
     if (shared.shares(static_cast<int>(a)) &&
         shared.shares(static_cast<int>(b))) {
       continue;  // faces that join: check_sides() looks at them
+    }
+    if (films::may_meet(system, static_cast<int>(a), static_cast<int>(b))) {
+      continue;  // a film ends on another there
     }
     const Vec3& at = meeting.place;
     const std::string face =

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "evolve/films/joined_sides.h"
 #include "evolve/films/shared_sides.h"
 #include "pipeline/case_data/case_checks.h"
 #include "pipeline/case_data/case_wetted.h"
@@ -161,6 +162,10 @@ void check_free_sides(const Case& input, const films::FilmSystem& system,
       films[side].insert(names.begin(), names.end());
     }
   }
+  std::set<SideName> joined;
+  for (const films::JoinedSide& side : films::joined_sides(system)) {
+    joined.insert({side.curve, side.side});
+  }
   for (std::size_t c = 0; c < system.curves.size(); ++c) {
     const curves::Curve& curve = system.curves[c];
     const bool is_used =
@@ -178,11 +183,13 @@ void check_free_sides(const Case& input, const films::FilmSystem& system,
       const auto at = first.find(own);
       const std::set<std::string>& there =
           films[at == first.end() ? own : at->second];
-      if (is_free && there.size() < 3 && !is_cell(input, curve.name)) {
+      if (is_free && there.size() < 3 && joined.count(own) == 0 &&
+          !is_cell(input, curve.name)) {
         values.problems().push_back(fmt::format(
             "{}: the side from {} to {} of curve '{}' is free, and {} film{} "
             "there{}{}; lines balance where three films or more meet: let more "
-            "end at that side, or hold it",
+            "end at that side, name the film that it joins (joins = "
+            "[\"FILM\"]), or hold it",
             place(input, input.curves[c].line), text(sides[k].from),
             text(sides[k].to), curve.name, there.size(),
             there.size() == 1 ? " ends" : "s end", there.empty() ? "" : ", ",

@@ -297,6 +297,7 @@ std::string tried_advice(const case_data::Case& input,
   QuietMonitor quiet(outer);
   const Names named = surfaces_named(inputs.film_system, failure.message);
   std::vector<Trial> in_vain;
+  outer.progress({.stage = "film", .detail = failure.message});
   std::vector<Trial> trials =
       trials_of(input, inputs, named, of_films, options.edge);
   if (failure.message.find(settle::kPopHelps) != std::string::npos) {

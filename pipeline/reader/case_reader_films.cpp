@@ -47,14 +47,14 @@ const std::vector<FilmRow>& film_kinds() {
        "a branch needs two or more"},
       {"loft",
        films::FilmKind::Loft,
-       {{"curves"}, {"tension", "drop"}},
+       {{"curves"}, {"joins", "tension", "drop"}},
        "band between two",
        2,
        2,
        "a loft needs two"},
       {"disk",
        films::FilmKind::Disk,
-       {{"curves"}, {"tension", "drop"}},
+       {{"curves"}, {"joins", "tension", "drop"}},
        "across the first, around the others, which lie within it as seen along "
        "it",
        1,
@@ -214,6 +214,7 @@ case_data::FilmEntry read_film(CaseContext& context, const CaseTable& table,
     film.spec.within = read_within(context, table);
   }
   check_curves(context, table, known, film.spec.curves);
+  film.spec.joins = table.names("joins");
   film.tension = table.place_quantity("tension").value_or(
       case_data::PlaceQuantity{{.expression = Expression(1.0),
                                 .line = table.line(),
@@ -479,6 +480,9 @@ TableSpec film_table() {
        {"curves", K::Names, D::None, false,
         "the curves that hold it; of facets and file those that its rims lie "
         "on, none where it is closed"},
+       {"joins", K::Names, D::None, false,
+        "of loft and disk: films that it ends on along the free sides of its "
+        "curves, wherever the line comes to rest"},
        {"tension", K::Field, D::Tension, false,
         "energy per area of the film, above 0; 1 when left out"},
        {"drop", K::Spheroids, D::None, false,

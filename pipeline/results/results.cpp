@@ -27,6 +27,7 @@
 #include "pipeline/store/stored_case.h"
 #include "pipeline/store/study_table.h"
 #include "pipeline/store/topology_events.h"
+#include "pipeline/study/multiplier_figures.h"
 #include "pipeline/whole/whole_part.h"
 
 namespace meniscus::results {
@@ -258,6 +259,9 @@ nlohmann::ordered_json result_json(const case_data::Case& input,
   for (const study::Constraint& c : result.constraints) {
     json["constraints"][c.name] = {
         {"value", c.value}, {"bound", c.bound}, {"satisfied", c.satisfied}};
+  }
+  if (result.multipliers) {
+    json["multipliers"] = study::multipliers_json(input, *result.multipliers);
   }
   if (result.sweep) {
     json["sweep"] = study::sweep_json(input, *result.sweep);

@@ -11,6 +11,7 @@
 #include "pipeline/forward/eigen_figures.h"
 #include "pipeline/forward/norm_peaks.h"
 #include "pipeline/results/results.h"
+#include "pipeline/study/multiplier_figures.h"
 
 namespace meniscus::results {
 
@@ -240,6 +241,10 @@ std::string result_text(const case_data::Case& input,
                 ? fmt::format("  {:<20} mismatch {:.2e}, tolerance {:.1e}\n",
                               c.name, c.value, c.bound)
                 : constraint_text(input, input.study.constraints[k], c);
+  }
+  if (result.multipliers) {
+    text +=
+        study::multipliers_text(input, *result.multipliers, result.objective);
   }
   for (const forward::NormPeak& peak :
        forward::norm_peaks(input, best.responses, result.stress)) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "optimize/minimize.h"
+#include "optimize/multipliers.h"
 #include "pipeline/study/design_evaluator.h"
 #include "pipeline/study/match_targets.h"
 #include "pipeline/study/study.h"
@@ -31,6 +32,7 @@ struct StudyOutcome {
   bool unproven = false;  // stopped because the search ended by itself
   double objective = 0.0;
   std::vector<Constraint> constraints;
+  std::optional<optimize::Multipliers> multipliers;  // of a minimum
   Eigen::MatrixXd jacobian;  // of a match: d residual / d x near `best`
   std::optional<SweepFigures> sweep;
   std::optional<ToleranceFigures> tolerance;

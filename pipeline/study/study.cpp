@@ -297,6 +297,7 @@ void StudyRun::take_outcome() {
   result_.message = outcome.message;
   result_.objective = outcome.objective;
   result_.constraints = outcome.constraints;
+  result_.multipliers = outcome.multipliers;
   result_.sweep = outcome.sweep;
   result_.tolerance = outcome.tolerance;
   result_.front = outcome.front;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/monitor.h"
+#include "optimize/multipliers.h"
 #include "pipeline/accuracy/mesh_errors.h"
 #include "pipeline/case_data/case.h"
 #include "pipeline/forward/adaptation.h"
@@ -65,6 +66,9 @@ struct RunResult {
   std::optional<forward::Evaluation> best;
   double objective = 0.0;  // of a match: sum of squared residuals / 2
   std::vector<Constraint> constraints;
+  /// Of a minimum, where the search ended and on its model; none where it ended
+  /// without derivatives, or the answer is another design.
+  std::optional<optimize::Multipliers> multipliers;
   std::optional<SweepFigures> sweep;
   std::optional<ToleranceFigures> tolerance;
   std::optional<FrontFigures> front;

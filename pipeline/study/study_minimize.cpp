@@ -95,7 +95,9 @@ StudyOutcome minimize(const StudyTask& task) {
       .message = report.message,
       .best = report.best,
       .unproven = kept,
-      .objective = report.objective};
+      .objective = report.objective,
+      .multipliers =
+          optimize::multipliers(variables_of(task.input, task.start), report)};
   for (const optimize::ConstraintState& state : report.constraints) {
     outcome.constraints.push_back(to_constraint(state));
   }

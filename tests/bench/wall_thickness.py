@@ -15,8 +15,8 @@ import vtk
 from vtk.util.numpy_support import vtk_to_numpy
 
 CASE = pathlib.Path(__file__).resolve().parents[2] / "cases/h_beam_casting"
-WALLS = {"shell": 12.0, "blend_a": 12.0, "blend_b": 12.0, "web_a": 14.0,
-         "web_b": 14.0}  # [mm]
+WALLS = dict.fromkeys(["shell", "blend_1", "blend_2", "floor_1", "floor_2",
+                       "web_1", "web_2"], 12.0)  # [mm]
 PROMISED = 0.05
 LEAST = 0.9
 

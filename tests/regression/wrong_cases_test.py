@@ -557,22 +557,27 @@ WRONG = {
     ],
     "h_beam_casting": [
         Wrong("swapped", "the rings of both blends",
-              {'["ring_a", "beam_a"]': '["ring_b", "beam_a"]',
-               '["ring_b", "beam_b"]': '["ring_a", "beam_b"]'}, 2,
-              not_closed("arm_a", "ring_a", "let film 'blend_a' end at "
-                         "'ring_a', not at 'ring_b'"),
-              'enclosed_by = ["blend_a"'),
-        Wrong("open", "the base without its floor",
-              {'"web_b", "floor"]': '"web_b"]'}, 2,
-              not_closed("base", "foot", "add 'floor'"),
+              {'["ring_{i}", "beam_{i}"]': '["ring_{3 - i}", "beam_{i}"]'}, 2,
+              not_closed("arm_1", "ring_1", "add"),
+              'enclosed_by = ["blend_{i}"'),
+        Wrong("open", "the base without its ground",
+              {'"floor_2", "ground"]': '"floor_2"]'}, 2,
+              not_closed("base", "foot", "add 'ground'"),
               'enclosed_by = ["shell"'),
         Wrong("crossing", "rings that meet", {}, 2,
-              (r"case\.toml:{line}: curves 'ring_a' and 'ring_b' meet near "
-               r"\(.*\) where half_spacing = 60",), "[curves.ring_b]",
+              (r"case\.toml:{line}: curves 'ring_1' and 'ring_2' meet near "
+               r"\(.*\) where half_spacing = 60",), "[curves.ring]",
               "check case.toml --set half_spacing=60"),
-        Wrong("thick", "walls thicker than the sockets", {}, 3, (UNSOUND,),
-              command="run case.toml --set skin=60 "
-                      "--set design.skin.bounds=[9,80]"),
+        Wrong("joins", "webs that join a film of another name",
+              {'["blend_{i}", "floor_{i}"]\ntension': '["blend_{i}", "flor_{i}"]\ntension'},
+              2, (r"case\.toml:{line}: .*'flor_1'.*floor_1",), "[films.web]"),
+        Wrong("amid", "webs that end amid the flanges",
+              {'["(2 * i - 3) * end_x", "depth", "end_z"],\n  ["(2 * i - 3) * half_spacing", "ring_radius"':
+               '["(2 * i - 3) * end_x", "depth - 20", "end_z"],\n  ["(2 * i - 3) * half_spacing", "ring_radius"'},
+              2, (r"curves 'web_1' and 'inner_end_1' meet near",)),
+        Wrong("thick", "walls thicker than the beams", {}, 3, (UNSOUND,),
+              command="run case.toml --set skin=160 "
+                      "--set design.skin.bounds=[9,200]"),
     ],
     "minimal_cell": [
         Harmless("the way of a wall's normal",

@@ -478,7 +478,7 @@ async function testVectors(browser) {
     assert.match(text, /t \[2 \u00d7 6\]/);
     assert.doesNotMatch(text, /t\[\d/);
     const rows = await page.evaluate(() =>
-      [...document.querySelectorAll("#answer table:first-of-type tbody tr")].map((r) => r.innerText),
+      [...document.querySelector("#answer table").querySelectorAll("tbody tr")].map((r) => r.innerText),
     );
     assert.equal(rows.filter((r) => r.startsWith("t [2")).length, 1, rows.join("\n"));
     if (name === "petals") {
@@ -486,6 +486,7 @@ async function testVectors(browser) {
       assert.match(rows[0], /25\s?mm each|25\.\d* mm each/);
       assert.match(text, /t \[2 \u00d7 6\], lowest/);
       assert.match(text, /per mm of all of t \[2 \u00d7 6\]/);
+      assert.match(text, /What binds, and what it is worth/);
       await visit.changes("pushes", () => visit.set("push", "0"));
     }
     if (name === "petal_sweep") {

@@ -211,6 +211,17 @@ export type Constraints = Record<
   { value: number | null; bound: number | null; satisfied: boolean }
 >;
 
+/** A bound that a minimum stands at. */
+export interface BindingBound {
+  name: string;
+  of: "constraint" | "variable";
+  side: "lower" | "upper" | "both";
+  bound: number;
+  /** What the objective does where the bound gives way by `step`. */
+  step: number;
+  change: number | null;
+}
+
 /** result.json (docs/results.md), as far as the page looks at it. */
 export interface Result {
   case: string;
@@ -223,6 +234,7 @@ export interface Result {
   parameter_errors?: Inputs;
   objective?: number | null;
   constraints?: Constraints;
+  multipliers?: { residual: number | null; binding: BindingBound[] };
   responses?: Numbers;
   response_errors?: Numbers;
   start?: { parameters: Inputs; responses: Numbers };

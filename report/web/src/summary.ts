@@ -1,4 +1,4 @@
-import type { PageData, Result, StressFigures } from "./data";
+import type { BindingBound, PageData, Result, StressFigures } from "./data";
 import { h, section, table } from "./dom";
 import { count, direction, number, percent, quantity, seconds, words } from "./format";
 import { inputsOf, responsesOf } from "./measures";
@@ -12,6 +12,9 @@ const STATUS: Record<string, string> = {
   error: "broken off",
   interrupted: "interrupted",
 };
+
+const MOST_BINDING = 12;
+const SIDES = { lower: "at least ", upper: "at most ", both: "wanted " };
 
 export function headline(data: PageData): HTMLElement {
   const result = data.result;
@@ -186,6 +189,7 @@ export function answerSection(data: PageData): HTMLElement | null {
         )
       : null,
     constraintTable(data, result),
+    bindingTable(data, result),
     others.length > 0
       ? table(
           "Parameters of the case",
@@ -250,6 +254,47 @@ function constraintTable(data: PageData, result: Result): HTMLElement | null {
       ];
     }),
   );
+}
+
+/** What the bounds that hold a minimum are worth; those of a vector on one side are one row. */
+function bindingTable(data: PageData, result: Result): HTMLElement | null {
+  const vectors = designRows(data).filter((row) => row.isVector);
+  const groups = new Map<string, { label: string; bounds: BindingBound[] }>();
+  for (const bound of result.multipliers?.binding ?? []) {
+    const vector =
+      bound.of === "variable" ? vectors.find((row) => row.elements.some((e) => e.name === bound.name)) : undefined;
+    const label = vector?.label ?? words(bound.name);
+    const key = [bound.of, label, bound.side].join(" ");
+    groups.set(key, { label, bounds: [...(groups.get(key)?.bounds ?? []), bound] });
+  }
+  const objective = data.case?.study.objective ?? "";
+  const rows = [...groups.values()].slice(0, MOST_BINDING).map(({ label, bounds }) => {
+    const [first] = bounds;
+    const measures = first.of === "constraint" ? responsesOf(data) : inputsOf(data);
+    const change = bounds.reduce((sum, bound) => sum + (bound.change ?? 0), 0);
+    const part = result.objective ? ` (${percent(change / Math.abs(result.objective), 2)})` : "";
+    return [
+      label,
+      bounds.length > 1
+        ? `${count(bounds.length)} at ${first.side} bounds`
+        : SIDES[first.side] + measures.text(first.name, first.bound),
+      bounds.length > 1 ? `each by ${percent(0.01)}` : measures.text(first.name, first.bound + first.step),
+      responsesOf(data).text(objective, change) + part,
+    ];
+  });
+  const more = groups.size - rows.length;
+  return rows.length === 0
+    ? null
+    : table(
+        `What binds, and what it is worth${more > 0 ? ` (${count(more)} more of less weight)` : ""}`,
+        [
+          { head: "of" },
+          { head: "bound", numeric: true },
+          { head: "moved to", numeric: true },
+          { head: `change of ${words(objective)}`, numeric: true },
+        ],
+        rows,
+      );
 }
 
 /** How far to trust it. */

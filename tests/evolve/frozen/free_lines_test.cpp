@@ -1,9 +1,12 @@
 // Films that begin along a free curve and meet where they balance.
 #include <cmath>
 #include <numbers>
+#include <random>
+#include <string>
 
 #include <gtest/gtest.h>
 
+#include "core/error.h"
 #include "core/geometry/surface_mesh.h"
 #include "evolve/frozen/film_model.h"
 
@@ -29,7 +32,7 @@ films::FilmSystem two_rings(double tension, double aside = 0.0,
   return system;
 }
 
-/// Vertices where three films meet, with the facets' normals about them.
+/// Vertices where all films meet.
 std::vector<int> line_of(const SurfaceMesh& mesh) {
   std::vector<int> films(mesh.points.size(), 0);
   for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
@@ -37,9 +40,10 @@ std::vector<int> line_of(const SurfaceMesh& mesh) {
       films[v] |= 1 << mesh.facet_label[f];
     }
   }
+  const int all = (1 << mesh.labels.size()) - 1;
   std::vector<int> result;
   for (std::size_t v = 0; v < films.size(); ++v) {
-    if (films[v] == 7) {
+    if (films[v] == all) {
       result.push_back(static_cast<int>(v));
     }
   }
@@ -365,6 +369,169 @@ TEST(FreeLine, ForgetsWhereItBegan) {
   films::FilmSystem other = two_rings(1.0);
   other.curves[1].shape = curves::Circle{Vec3(0, 0, 5), Vec3::UnitX(), 3.0};
   EXPECT_EQ(model.settle(other).points, model.reference().points);
+}
+
+/// The two rings with one film between them, which the web joins.
+films::FilmSystem joined_rings(double tension, const curves::Circle& guess) {
+  films::FilmSystem system = two_rings(tension);
+  system.curves[1].shape = guess;
+  system.films = {{"skin", films::FilmKind::Loft, {"low", "high"}, 1.0},
+                  {"web", films::FilmKind::Disk, {"line"}, tension}};
+  system.films[1].joins = {"skin"};
+  return system;
+}
+
+// The line is that of two films that a curve parts, wherever it was drawn.
+TEST(JoinedFilm, FindsThePlaceOfARingedDisk) {
+  std::mt19937 random(20);
+  std::uniform_real_distribution<double> within(-1.0, 1.0);
+  for (const double tension : {1.0, 0.6, 1.3}) {
+    const Exact exact(tension);
+    const Vec3 place(0.1 * within(random), 0.1 * within(random),
+                     0.12 * within(random));
+    const Vec3 normal(0.2 * within(random), 0.2 * within(random), 1.0);
+    const curves::Circle guess{place, normal, 0.9 + 0.15 * within(random)};
+    std::vector<double> off;
+    for (const int refinements : {0, 1, 2}) {
+      const frozen::FilmModel model =
+          frozen::FilmModel::freeze(joined_rings(tension, guess),
+                                    {.edge = 0.15, .refinements = refinements});
+      const settle::FilmState& found = model.reference();
+      ASSERT_FALSE(found.failure) << found.failure->message;
+      EXPECT_EQ(found.report.index, 0);
+      off.push_back(std::abs(found.report.energy / exact.energy - 1.0));
+      const SurfaceMesh mesh = model.fine_mesh(found.points);
+      const std::vector<int> line = line_of(mesh);
+      ASSERT_GT(line.size(), 20U);
+      for (const int v : line) {
+        EXPECT_NEAR(mesh.points[v].z(), 0.0, 1e-2);
+        EXPECT_NEAR(mesh.points[v].head<2>().norm(), exact.radius, 2e-2);
+      }
+    }
+    SCOPED_TRACE(tension);
+    EXPECT_LT(off[2], 1e-3);
+    EXPECT_GT(off[0] / off[2], 10.0);
+  }
+}
+
+/// A skin in a frame of four corners, two sides of which rise to where a plate
+/// ends that stands on it; `cut`: the skin is two films that begin along the
+/// plate's foot.
+films::FilmSystem plate_on_skin(const Points& frame, const Points& top,
+                                double tension, const Vec3& foot, bool cut,
+                                double rise = 0.0) {
+  const Vec3 from = 0.5 * (frame[0] + frame[1]) + rise * Vec3::UnitZ();
+  const Vec3 to = 0.5 * (frame[2] + frame[3]) + rise * Vec3::UnitZ();
+  films::FilmSystem system;
+  // A corner amid the foot, where it is drawn.
+  system.curves = {
+      {"skin",
+       curves::Polygon{{frame[0], from, frame[1], frame[2], to, frame[3]}}},
+      {"plate", curves::Polygon{{from, foot, to, top[1], top[0]}}},
+      {"left", curves::Polygon{{from, frame[1], frame[2], to, foot}}},
+      {"right", curves::Polygon{{from, foot, to, frame[3], frame[0]}}}};
+  system.curves[1].free_sides = {0, 1};
+  system.curves[2].free_sides = {3, 4};
+  system.curves[3].free_sides = {0, 1};
+  system.films = {{"plate", films::FilmKind::Disk, {"plate"}, tension}};
+  if (cut) {
+    system.films.push_back({"left", films::FilmKind::Disk, {"left"}, 1.0});
+    system.films.push_back({"right", films::FilmKind::Disk, {"right"}, 1.0});
+  } else {
+    system.films[0].joins = {"skin"};
+    system.films.push_back({"skin", films::FilmKind::Disk, {"skin"}, 1.0});
+  }
+  return system;
+}
+
+// Random frames, plates and tensions: the same film as of a skin that is drawn
+// in two parts, the difference falling with the square of the edge.
+TEST(JoinedFilm, IsThatOfASkinDrawnInTwoParts) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> by(-0.25, 0.25);
+  const auto near = [&](double x, double y, double z) {
+    return Vec3(x + by(random), y + by(random), z + by(random));
+  };
+  for (int k = 0; k < 6; ++k) {
+    const Points frame = {near(-1, -1, 0), near(1, -1, 0), near(1, 1, 0),
+                          near(-1, 1, 0)};
+    const Points top = {near(0, -1, 1.6), near(0, 1, 1.6)};
+    const Vec3 foot = near(0, 0, 0.4);
+    // At its ends the line is held; the frame leaves it there about as the
+    // tensions want it, else it would climb (docs/theory.md).
+    const double tension = 0.8 + 2.0 * by(random);
+    const double rise = std::tan(std::asin(0.5 * tension));
+    std::vector<double> apart;
+    for (const int refinements : {0, 2}) {
+      std::vector<double> energy;
+      for (const bool cut : {false, true}) {
+        const frozen::FilmModel model = frozen::FilmModel::freeze(
+            plate_on_skin(frame, top, tension, foot, cut, rise),
+            {.edge = 0.2, .refinements = refinements});
+        const settle::FilmState& found = model.reference();
+        ASSERT_FALSE(found.failure)
+            << k << cut << refinements << ' ' << found.failure->message;
+        EXPECT_EQ(found.report.index, 0);
+        energy.push_back(found.report.energy);
+      }
+      apart.push_back(std::abs(energy[0] / energy[1] - 1.0));
+    }
+    EXPECT_LT(apart[1], 3e-6) << k;
+    EXPECT_LT(apart[1], 0.3 * apart[0] + 1e-6) << k;
+  }
+}
+
+// A second plate ends on skin and first plate: four lines in two points of
+// rims, three films along each.
+TEST(JoinedFilm, JoinsAnotherThatJoins) {
+  const Points frame = {Vec3(-1, -1, 0), Vec3(1, -1, 0), Vec3(1, 1, 0.2),
+                        Vec3(-1, 1, 0)};
+  films::FilmSystem system = plate_on_skin(
+      frame, {Vec3(0, -1, 1), Vec3(0.1, 1, 1)}, 0.8, Vec3(0.05, 0, 0.1), false);
+  const Vec3 side = 0.5 * (frame[1] + frame[2]);
+  const Vec3 top = 0.5 * (Vec3(0, -1, 1) + Vec3(0.1, 1, 1));
+  system.curves.push_back(
+      {"second", curves::Polygon{{Vec3(0.05, 0, 0.1), side, top}}});
+  system.curves.back().free_sides = {0, 2};
+  system.films.push_back({"second", films::FilmKind::Disk, {"second"}, 0.5});
+  system.films.back().joins = {"skin", "plate"};
+  const frozen::FilmModel model =
+      frozen::FilmModel::freeze(system, {.edge = 0.15, .refinements = 1});
+  const settle::FilmState& found = model.reference();
+  ASSERT_FALSE(found.failure) << found.failure->message;
+  EXPECT_EQ(found.report.index, 0);
+  const std::vector<int> three = line_of(model.fine_mesh(found.points));
+  EXPECT_EQ(three.size(), 1U);  // all three films in one point alone
+}
+
+std::string failure_of(const films::FilmSystem& system) {
+  try {
+    static_cast<void>(
+        frozen::FilmModel::freeze(system, {.edge = 0.2, .refinements = 0}));
+  } catch (const InvalidInput& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(JoinedFilm, SaysWhereItCannotEnd) {
+  const Points frame = {Vec3(-1, -1, 0), Vec3(1, -1, 0), Vec3(1, 1, 0),
+                        Vec3(-1, 1, 0)};
+  const films::FilmSystem good = plate_on_skin(
+      frame, {Vec3(0, -1, 1), Vec3(0, 1, 1)}, 0.8, Vec3(0, 0, 0.1), false);
+  EXPECT_EQ(failure_of(good), "");
+  films::FilmSystem amid = good;
+  std::get<curves::Polygon>(amid.curves[1].shape).points[0] =
+      Vec3(0, -0.6, 0.0);
+  EXPECT_NE(failure_of(amid).find("ends at (0, -0.6, 0), 0.4 from"),
+            std::string::npos)
+      << failure_of(amid);
+  films::FilmSystem around = good;
+  around.films[1].joins = {"plate"};
+  around.curves[0].free_sides = {0};
+  EXPECT_NE(failure_of(around).find("joins films that join it"),
+            std::string::npos)
+      << failure_of(around);
 }
 
 }  // namespace
