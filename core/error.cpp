@@ -10,6 +10,8 @@ const char* name_of(FailureKind kind) {
       return "film_pinched";
     case FailureKind::FilmNotFound:
       return "film_not_found";
+    case FailureKind::FilmRejoins:
+      return "film_rejoins";
     case FailureKind::SurfaceInvalid:
       return "surface_invalid";
     case FailureKind::MeshingFailed:

@@ -58,6 +58,8 @@ enum class FailureKind {
   FilmUnstable,      // equilibrium found, but the Hessian has negative index
   FilmPinched,       // a neck closes or has closed
   FilmNotFound,      // no equilibrium of this topology found
+  FilmRejoins,       // lines where films meet run together, or a film between
+                     // them shrinks away: films join in another way there
   SurfaceInvalid,    // the closed surface crosses itself or is not closed, or
                      // a fillet has no room on it
   MeshingFailed,     // the tetrahedral mesher found no mesh or a poor one

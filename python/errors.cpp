@@ -112,7 +112,8 @@ void bind_errors(py::module_& module) {
       .def_property_readonly(
           "kind", [](const Failure& self) { return name_of(self.kind); },
           "The cause, as in result.json: 'film_unstable', 'film_pinched', "
-          "'film_not_found', 'surface_invalid', 'meshing_failed', "
+          "'film_not_found', 'film_rejoins', 'surface_invalid', "
+          "'meshing_failed', "
           "'elements_inverted', 'solver_failed' or 'not_a_number'.")
       .def_readonly("message", &Failure::message,
                     "What, where, and what would help.")

@@ -102,6 +102,14 @@ struct ComplexSurface {
   /// `tension`, which may be below 0; `constraints` is of its rim, which slides
   /// there.
   std::optional<WettedWall> wetted;
+  /// Of a film that a pop made, the one it was pulled from: its numbers are
+  /// that one's. Empty: none.
+  std::string pulled_from;
+
+  /// The name of the film or cap whose numbers it has.
+  const std::string& numbers_of() const {
+    return pulled_from.empty() ? name : pulled_from;
+  }
 };
 
 /// An edge or a face of a solid from a CAD program.

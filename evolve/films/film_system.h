@@ -173,6 +173,9 @@ struct FilmSystem {
   /// Facets that are given are the film's own: halved until they are as small
   /// as its edge, never remeshed.
   bool keep_facets = false;
+  /// Junctions that no film keeps are popped when a model is frozen
+  /// (evolve/groom/pop.h); else they are what is wrong with its film.
+  bool pop = false;
 };
 
 }  // namespace meniscus::films

@@ -228,7 +228,7 @@ FilmAdjoint::Rates FilmModel::Impl::rates_of(
   // Tensions, volumes and pressures are direct numbers of the system.
   for (std::size_t s = 0; s < complex.surfaces.size(); ++s) {
     const films::FilmSpec* film =
-        find_named(rates.films, complex.surfaces[s].name);
+        find_named(rates.films, complex.surfaces[s].numbers_of());
     if (film != nullptr && complex.surfaces[s].liquid) {
       result.tensions[static_cast<Eigen::Index>(s)] = film->tension;
     } else if (complex.surfaces[s].wetted) {
@@ -273,7 +273,7 @@ double FilmModel::rate(const FilmGradient& gradient,
   }
   for (std::size_t s = 0; s < impl_->complex.surfaces.size(); ++s) {
     const films::FilmSpec* film =
-        find_named(rates.films, impl_->complex.surfaces[s].name);
+        find_named(rates.films, impl_->complex.surfaces[s].numbers_of());
     if (film != nullptr && impl_->complex.surfaces[s].liquid) {
       sum += gradient.tensions[static_cast<Eigen::Index>(s)] * film->tension;
     } else if (impl_->complex.surfaces[s].wetted) {

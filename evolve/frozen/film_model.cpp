@@ -19,6 +19,7 @@
 #include "evolve/groom/slivers.h"
 #include "evolve/settle/equilibrium.h"
 #include "evolve/settle/find_equilibrium.h"
+#include "evolve/settle/settle_pops.h"
 #include "evolve/spines/spine_poles.h"
 #include "evolve/start/start_complex.h"
 #include "evolve/start/start_edge.h"
@@ -35,6 +36,11 @@ constexpr std::array<int, 2> kParts = {1, 4};
 /// the film may have slid to another equilibrium.
 constexpr int kManyIterations = 15;
 constexpr double kOtherStart = 0.8;  // x edge, of other first facets
+// A design without a film is looked for on the way to it by so many halvings;
+// a width of a film's lines, x that of the reference, below which they are
+// taken to run together there.
+constexpr int kHalvings = 6;
+constexpr double kRunTogether = 0.25;
 
 films::FilmTargets blend(const films::FilmTargets& from,
                          const films::FilmTargets& to, double t) {
@@ -112,6 +118,12 @@ void check_numbers(const films::FilmSystem& system) {
   }
 }
 
+bool is_of_film(const Failure& failure) {
+  return failure.kind == FailureKind::FilmNotFound ||
+         failure.kind == FailureKind::FilmPinched ||
+         failure.kind == FailureKind::FilmUnstable;
+}
+
 std::string no_value(const ExpressionError& error) {
   return fmt::format(
       "a field, or a tension (it must be above 0), has no value where the film "
@@ -131,10 +143,11 @@ films::FilmTargets FilmModel::Impl::targets_of_system(
     if (!complex.surfaces[s].liquid) {
       continue;
     }
-    const auto film = std::find_if(system.films.begin(), system.films.end(),
-                                   [&](const films::FilmSpec& f) {
-                                     return f.name == complex.surfaces[s].name;
-                                   });
+    const auto film =
+        std::find_if(system.films.begin(), system.films.end(),
+                     [&](const films::FilmSpec& f) {
+                       return f.name == complex.surfaces[s].numbers_of();
+                     });
     if (film == system.films.end()) {
       throw InvalidInput(
           fmt::format("the design has no film '{}', which its model has",
@@ -383,6 +396,9 @@ void FilmModel::Impl::settle_reference(const films::FilmComplex& first,
     settle_level(settle);
   } else {
     reference = settle::find_equilibrium(complex, find);
+    if (initial.pop) {
+      reference = settle::settle_pops(complex, std::move(reference), find);
+    }
   }
   if (wets && !reference.failure) {
     start::close_wetted_faces(complex, options.edge);
@@ -454,6 +470,53 @@ Points FilmModel::Impl::base_at(const Points& rim_moves,
   return carry->at(moves, fraction);
 }
 
+settle::FilmState FilmModel::Impl::settle_on_the_way(
+    const Points& moves, const films::FilmTargets& goal, double t,
+    const VectorX& heights, const settle::SettleOptions& options) const {
+  const Points base = base_at(moves, goal, t);
+  return settle::settle_along(
+      *energy, complex, t < 1.0 ? blend(targets, goal, t) : goal, base,
+      energy->space().directions(base), heights, usual_neck, options);
+}
+
+std::optional<Failure> FilmModel::Impl::lines_that_meet(
+    const Points& moves, const films::FilmTargets& goal,
+    const settle::SettleOptions& options) const {
+  double stands = 0.0;  // of the way
+  double fails = 1.0;
+  settle::FilmState last = reference;
+  NarrowFilm narrow = gaps->narrowest(reference.points);
+  for (int halving = 0; halving < kHalvings; ++halving) {
+    const double t = 0.5 * (stands + fails);
+    settle::FilmState state =
+        settle_on_the_way(moves, goal, t, last.heights, options);
+    if (state.failure) {
+      fails = t;
+    } else {
+      stands = t;
+      last = std::move(state);
+      narrow = gaps->narrowest(last.points);
+    }
+  }
+  if (narrow.ratio > kRunTogether) {
+    return std::nullopt;
+  }
+  const bool whole = narrow.how == NarrowFilm::How::Whole;
+  const char* what = whole ? "film '{}' shrinks away"
+                     : narrow.how == NarrowFilm::How::AtItsRim
+                         ? "the line at which film '{}' ends runs into its rim"
+                         : "two lines of film '{}' run together";
+  return Failure{
+      FailureKind::FilmRejoins,
+      fmt::format("{} at ({:.4g}, {:.4g}, {:.4g}): {:.3g} of the way from the "
+                  "model's design {} {:.3g}, of {:.3g} there; beyond, films "
+                  "join in another way, as those of a model frozen there",
+                  fmt::format(fmt::runtime(what), narrow.film),
+                  narrow.place.x(), narrow.place.y(), narrow.place.z(), stands,
+                  whole ? "the root of its area is" : "they are apart by",
+                  narrow.width, narrow.usual)};
+}
+
 settle::FilmState FilmModel::Impl::settle_in_parts(
     const Points& moves, const films::FilmTargets& goal, int parts,
     const settle::SettleOptions& options) const {
@@ -464,12 +527,8 @@ settle::FilmState FilmModel::Impl::settle_in_parts(
   int iterations = 0;
   try {
     for (int part = 1; part <= parts && !state.failure; ++part) {
-      const double t = static_cast<double>(part) / parts;
-      const Points base = base_at(moves, goal, t);
-      state = settle::settle_along(
-          *energy, complex, part == parts ? goal : blend(targets, goal, t),
-          base, energy->space().directions(base), state.heights, usual_neck,
-          options);
+      state = settle_on_the_way(moves, goal, static_cast<double>(part) / parts,
+                                state.heights, options);
       iterations += state.report.iterations;
     }
     if (!state.failure) {
@@ -582,6 +641,9 @@ FilmModel FilmModel::finish(std::unique_ptr<Impl> impl,
     model.impl_->usual_neck = model.impl_->reference.report.smallest_neck;
     model.impl_->reference = model.settle(initial, settle);
     model.impl_->lead_lines(initial);
+    if (!model.impl_->carry->lines().empty()) {
+      model.impl_->gaps.emplace(model.impl_->complex);
+    }
   } else if (model.impl_->reference.points.size() !=
              model.impl_->complex.mesh.points.size()) {
     model.impl_->reference.points = model.impl_->complex.mesh.points;
@@ -626,6 +688,13 @@ settle::FilmState FilmModel::settle(
   }
   const bool moved = std::any_of(moves.begin(), moves.end(),
                                  [](const Vec3& m) { return !m.isZero(0.0); });
+  if (state.failure && impl_->gaps && is_of_film(*state.failure)) {
+    if (std::optional<Failure> meeting =
+            impl_->lines_that_meet(moves, goal, options)) {
+      state.failure = std::move(meeting);
+      state.report.verdict = state.failure->message;
+    }
+  }
   if (moved && state.failure &&
       state.failure->kind == FailureKind::FilmNotFound) {
     state.failure->message +=

@@ -11,6 +11,7 @@
 #include "evolve/frozen/carry.h"
 #include "evolve/frozen/film_adjoint.h"
 #include "evolve/frozen/film_model.h"
+#include "evolve/frozen/line_gaps.h"
 #include "evolve/frozen/line_lead.h"
 
 namespace meniscus::frozen {
@@ -25,6 +26,7 @@ struct FilmModel::Impl {
   std::optional<energy::FilmEnergy> energy;
   std::optional<Carry> carry;
   std::unique_ptr<const LineLead> lead;  // null: no lines that move
+  std::optional<LineGaps> gaps;          // of the reference, where it has lines
   films::FilmTargets targets;
   settle::FilmState reference;
   double usual_neck = 0.0;    // of the reference [length]
@@ -107,6 +109,16 @@ struct FilmModel::Impl {
       const std::vector<FilmCovector>& responses) const;
   FilmAdjoint::Rates rates_of(const films::FilmSystem& system,
                               const films::FilmSystem& rates) const;
+  /// At `t` of the way from the reference to a design, from the film of those
+  /// heights.
+  settle::FilmState settle_on_the_way(
+      const Points& moves, const films::FilmTargets& goal, double t,
+      const VectorX& heights, const settle::SettleOptions& options) const;
+  /// Where lines run together on the way to a design that has no film; nothing
+  /// where they do not.
+  std::optional<Failure> lines_that_meet(
+      const Points& moves, const films::FilmTargets& goal,
+      const settle::SettleOptions& options) const;
   settle::FilmState settle_in_parts(const Points& moves,
                                     const films::FilmTargets& goal, int parts,
                                     const settle::SettleOptions& options) const;

@@ -114,8 +114,15 @@ int FilmCutter::add_surface(int like, int ahead, int behind) {
   do {
     surface.name = fmt::format("popped{}", number++);
   } while (complex_.mesh.label_of(surface.name) >= 0);
+  surface.pulled_from = complex_.surfaces[like].numbers_of();
   complex_.mesh.labels.push_back(surface.name);
   complex_.surfaces.push_back(std::move(surface));
+  for (films::FilmQuantity& quantity : complex_.quantities) {
+    if (std::count(quantity.surfaces.begin(), quantity.surfaces.end(), like) >
+        0) {
+      quantity.surfaces.push_back(id);
+    }
+  }
   if (ahead != behind) {
     if (ahead >= 0) {
       complex_.bodies[ahead].sides.push_back({id, -1});

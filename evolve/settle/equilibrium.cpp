@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "core/timer.h"
@@ -131,6 +132,32 @@ VectorX pressures_of(const FilmReport& report) {
   return pressure;
 }
 
+std::vector<PulledFilm> popped_films(const films::FilmComplex& complex,
+                                     const Points& points) {
+  std::vector<PulledFilm> result;
+  for (std::size_t s = 0; s < complex.surfaces.size(); ++s) {
+    const films::ComplexSurface& surface = complex.surfaces[s];
+    if (surface.pulled_from.empty()) {
+      continue;
+    }
+    PulledFilm film{.name = surface.name, .pulled_from = surface.pulled_from};
+    for (std::size_t f = 0; f < complex.mesh.facets.size(); ++f) {
+      if (complex.mesh.facet_label[f] == static_cast<int>(s)) {
+        const auto& [a, b, c] = complex.mesh.facets[f];
+        const double area =
+            0.5 * (points[b] - points[a]).cross(points[c] - points[a]).norm();
+        film.area += area;
+        film.place += area / 3.0 * (points[a] + points[b] + points[c]);
+      }
+    }
+    if (film.area > 0.0) {  // else another pop took all of it
+      film.place /= film.area;
+      result.push_back(std::move(film));
+    }
+  }
+  return result;
+}
+
 namespace {
 
 /// Where the film is farthest from rest, by the vertices' residuals.
@@ -163,6 +190,7 @@ void set_verdict(const energy::FilmEnergy& energy,
       input.neck ? *input.neck
       : finite ? narrowest_neck(energy, state.points, complex.mesh.facet_label)
                : Neck{};
+  report.popped = popped_films(complex, state.points);
   report.smallest_neck = neck.width;
   report.neck_position = neck.position;
   const double edge = finite ? energy.mean_edge(state.points) : 0.0;

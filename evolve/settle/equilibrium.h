@@ -57,6 +57,10 @@ FilmReport figures_of(const energy::FilmEnergy& energy,
 /// One per functional.
 VectorX pressures_of(const FilmReport& report);
 
+/// The films of a complex that pops made, at `points`.
+std::vector<PulledFilm> popped_films(const films::FilmComplex& complex,
+                                     const Points& points);
+
 struct VerdictInput {
   std::string reason;  // why no equilibrium was reached; empty: it was
   Vec3 mode_position = Vec3::Zero();  // where the lowest mode is largest

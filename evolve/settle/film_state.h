@@ -26,6 +26,14 @@ struct BodyState {
   double pressure = 0.0;       // inside minus outside [force/length^2]
 };
 
+/// A film that a pop pulled off another one.
+struct PulledFilm {
+  std::string name;
+  std::string pulled_from;    // the film whose tension and wall it has
+  Vec3 place = Vec3::Zero();  // its middle
+  double area = 0.0;          // [length^2]
+};
+
 struct FilmReport {
   int vertices = 0;
   int facets = 0;
@@ -43,6 +51,7 @@ struct FilmReport {
   double smallest_neck = 0.0;
   Vec3 neck_position = Vec3::Zero();
   std::string verdict;  // "stable", "unstable: ...", "pinching: ..."
+  std::vector<PulledFilm> popped;
   std::vector<BodyState> bodies;
   double seconds = 0.0;
 };

@@ -320,12 +320,11 @@ void check_junctions(const std::optional<groom::UnstableJunction>& junction,
     return;
   }
   const Vec3& at = junction->place;
-  state.report.verdict = fmt::format(
-      "unstable: {} at ({:.4g}, {:.4g}, {:.4g}); popping it splits it and "
-      "lowers the energy",
-      junction->line ? "more than three films meet along the line"
-                     : "films meet otherwise than in four lines",
-      at.x(), at.y(), at.z());
+  state.report.verdict =
+      fmt::format("unstable: {} at ({:.4g}, {:.4g}, {:.4g}); {}",
+                  junction->line ? "more than three films meet along the line"
+                                 : "films meet otherwise than in four lines",
+                  at.x(), at.y(), at.z(), kPopHelps);
   state.failure = Failure{FailureKind::FilmUnstable, state.report.verdict};
 }
 

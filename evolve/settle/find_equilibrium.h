@@ -17,6 +17,10 @@ struct FindOptions {
   SettleOptions settle;
 };
 
+/// What is said of junctions that no film keeps (evolve/groom/junctions.h).
+inline constexpr const char* kPopHelps =
+    "popping it splits it and lowers the energy";
+
 /// Throws InvalidInput where no vertex of the film can move.
 void require_motion(const films::FilmComplex& complex);
 

@@ -203,9 +203,17 @@ WallFilms wall_films(const frozen::FilmModel& model,
   SurfaceMesh& mesh = films.mesh;
   mesh.points = points;
   for (std::size_t w = 0; w < walls.size(); ++w) {
-    for (const std::string& film : walls[w].films) {
+    const auto add = [&](const std::string& film) {
       mesh.labels.push_back(film);
       films.wall.push_back(static_cast<int>(w));
+    };
+    for (const std::string& film : walls[w].films) {
+      add(film);
+      for (const settle::PulledFilm& popped : model.reference().report.popped) {
+        if (popped.pulled_from == film) {
+          add(popped.name);
+        }
+      }
     }
     films.region.push_back(walls[w].region);
   }

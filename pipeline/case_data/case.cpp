@@ -298,6 +298,7 @@ films::FilmSystem films_of(const Case& input, const CaseValues& values) {
     }
   }
   system.keep_facets = input.resolution.keep_facets;
+  system.pop = input.resolution.pop;
   for (const StepSolidEntry& solid : input.step_solids) {
     system.solids.push_back(solid.spec);
   }

@@ -478,6 +478,7 @@ struct Resolution {
   double film = 0.0;         // edge of its nested refinement [length]
   int refinements = 1;       // film = fea / 2^refinements
   bool keep_facets = false;  // of films of facets: halved, never remeshed
+  bool pop = false;          // junctions that no film keeps
   std::vector<double> export_edges;
 };
 

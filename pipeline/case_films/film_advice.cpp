@@ -16,6 +16,7 @@
 #include "core/geometry/mesh_checks.h"
 #include "evolve/energy/energy.h"
 #include "evolve/frozen/film_model.h"
+#include "evolve/settle/find_equilibrium.h"
 #include "evolve/start/start_complex.h"
 
 namespace meniscus::case_films {
@@ -277,7 +278,8 @@ bool stands(const films::FilmSystem& system, const AdviceOptions& options,
 bool is_of_films(const Failure& failure) {
   return failure.kind == FailureKind::FilmPinched ||
          failure.kind == FailureKind::FilmUnstable ||
-         failure.kind == FailureKind::FilmNotFound;
+         failure.kind == FailureKind::FilmNotFound ||
+         failure.kind == FailureKind::FilmRejoins;
 }
 
 std::string tried_advice(const case_data::Case& input,
@@ -296,8 +298,14 @@ std::string tried_advice(const case_data::Case& input,
   const Names named = surfaces_named(inputs.film_system, failure.message);
   std::vector<Trial> in_vain;
   outer.progress({.stage = "film", .detail = failure.message});
-  for (const Trial& trial :
-       trials_of(input, inputs, named, of_films, options.edge)) {
+  std::vector<Trial> trials =
+      trials_of(input, inputs, named, of_films, options.edge);
+  if (failure.message.find(settle::kPopHelps) != std::string::npos) {
+    Trial trial{.system = inputs.film_system, .of = "resolution.pop = true"};
+    trial.system.pop = true;
+    trials.insert(trials.begin(), std::move(trial));
+  }
+  for (const Trial& trial : trials) {
     outer.progress({.stage = "film", .detail = "trying " + listed({trial})});
     if (stands(trial.system, options, quiet)) {
       return fmt::format(

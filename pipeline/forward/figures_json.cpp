@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "pipeline/files/place_json.h"
+
 namespace meniscus::forward {
 
 namespace {
@@ -59,6 +61,17 @@ nlohmann::ordered_json film_json(const settle::FilmReport& film) {
             film.neck_position.z()}},
           {"verdict", film.verdict},
           {"bodies", bodies}};
+}
+
+nlohmann::ordered_json popped_json(const settle::FilmReport& film) {
+  Json json = Json::array();
+  for (const settle::PulledFilm& popped : film.popped) {
+    json.push_back({{"name", popped.name},
+                    {"pulled_from", popped.pulled_from},
+                    {"place", files::place_json(popped.place)},
+                    {"area", popped.area}});
+  }
+  return json;
 }
 
 }  // namespace meniscus::forward

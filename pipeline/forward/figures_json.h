@@ -14,6 +14,9 @@ nlohmann::ordered_json units_json(const UnitSystem& units);
 /// The film's part of result.json.
 nlohmann::ordered_json film_json(const settle::FilmReport& film);
 
+/// The films that pops made, a list: `popped` of result.json.
+nlohmann::ordered_json popped_json(const settle::FilmReport& film);
+
 nlohmann::ordered_json tet_json(const TetFigures& tet);
 
 nlohmann::ordered_json fea_json(const equations::ElasticReport& fea);

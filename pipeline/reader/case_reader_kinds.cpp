@@ -174,7 +174,8 @@ TableSpec study_table() {
        {"refreeze", K::Flag, D::None, false,
         "of match and minimize: where the frozen mesh no longer follows, "
         "freeze a new model at the best design and go on from there, ten "
-        "times at most; true when left out"}}};
+        "times at most; with resolution.pop, of sweeps too, also at designs "
+        "where films join in another way; true when left out"}}};
 }
 
 void read_method(CaseContext& context, const CaseTable& table,

@@ -128,6 +128,7 @@ void read_resolution(CaseContext& context, const toml::table& root,
     }
     return edge;
   };
+  resolution.pop = table->flag("pop").value_or(false);
   resolution.keep_facets = table->flag("keep_facets").value_or(false);
   if (resolution.keep_facets && !case_data::has_facets(result)) {
     context.problems.add(table->line("keep_facets"),

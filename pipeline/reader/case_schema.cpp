@@ -95,7 +95,11 @@ std::vector<TableSpec> make_tables() {
         {"keep_facets", K::Flag, D::None, false,
          "films of kind facets and file keep their facets: each is cut in four "
          "until they are about as small as fea, and never remeshed; false when "
-         "left out"}}},
+         "left out"},
+        {"pop", K::Flag, D::None, false,
+         "where films meet as no film keeps, more than three along a line or "
+         "otherwise than in four lines, they are popped when the model is "
+         "frozen; false when left out"}}},
       {"process",
        false,
        N::Optional,

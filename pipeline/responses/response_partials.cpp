@@ -300,10 +300,19 @@ ResponsePartials film_area(const ResponseTask& task) {
   const std::vector<std::string>& labels = film.labels();
   ResponsePartials result;
   result.film.areas = VectorX::Zero(areas.size());
+  const auto add = [&](const std::string& name) {
+    result.film
+        .areas[std::find(labels.begin(), labels.end(), name) - labels.begin()] =
+        1.0;
+  };
   for (const films::FilmSpec& one : task.fields.inputs.film_system.films) {
     if (task.response.film.empty() || task.response.film == one.name) {
-      result.film.areas[std::find(labels.begin(), labels.end(), one.name) -
-                        labels.begin()] = 1.0;
+      add(one.name);
+    }
+  }
+  for (const settle::PulledFilm& one : task.fields.film_state->report.popped) {
+    if (task.response.film.empty()) {
+      add(one.name);
     }
   }
   result.value = areas.dot(result.film.areas);

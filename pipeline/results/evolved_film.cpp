@@ -22,11 +22,18 @@ Json numbers(const Points& points) {
   return std::vector<double>(values.begin(), values.end());
 }
 
-bool is_film(const case_data::Case& input, const std::string& name) {
+/// Of the case, or made by a pop.
+bool is_film(const case_data::Case& input, const frozen::FilmModel& model,
+             const std::string& name) {
+  const std::vector<settle::PulledFilm>& popped =
+      model.reference().report.popped;
   return std::any_of(input.films.begin(), input.films.end(),
                      [&](const case_data::FilmEntry& entry) {
                        return entry.spec.name == name;
-                     });
+                     }) ||
+         std::any_of(
+             popped.begin(), popped.end(),
+             [&](const settle::PulledFilm& film) { return film.name == name; });
 }
 
 Json nesting_json(const films::NestingReport& nesting) {
@@ -54,7 +61,7 @@ std::vector<std::pair<std::string, double>> areas_of_films(
   std::vector<std::pair<std::string, double>> all;
   for (std::size_t k = 0; k < model.labels().size(); ++k) {
     const std::string& name = model.labels()[k];
-    if (is_film(input, name)) {
+    if (is_film(input, model, name)) {
       all.emplace_back(name, areas[static_cast<Eigen::Index>(k)]);
     }
   }
@@ -66,7 +73,7 @@ films::NestingReport nesting_of_films(const case_data::Case& input,
   const SurfaceMesh mesh = model.fine_mesh(model.reference().points);
   std::vector<int> all;
   for (std::size_t k = 0; k < mesh.labels.size(); ++k) {
-    if (is_film(input, mesh.labels[k])) {
+    if (is_film(input, model, mesh.labels[k])) {
       all.push_back(static_cast<int>(k));
     }
   }
@@ -124,6 +131,9 @@ void write_evolved_film(const EvolvedFilm& film,
     json["units"] = forward::units_json(*film.units);
   }
   json.update(forward::film_json(film.report));
+  if (!film.report.popped.empty()) {
+    json["popped"] = forward::popped_json(film.report);
+  }
   json["nesting"] = nesting_json(film.nesting);
   for (const auto& [name, value] : film.quantities) {
     json["quantities"][name] = value;

@@ -27,6 +27,7 @@
 #include "pipeline/store/refreeze.h"
 #include "pipeline/store/stored_case.h"
 #include "pipeline/store/study_table.h"
+#include "pipeline/store/topology_events.h"
 #include "pipeline/whole/whole_part.h"
 
 namespace meniscus::results {
@@ -181,6 +182,21 @@ Json refrozen_json(const case_data::Case& input,
   return json;
 }
 
+Json topology_json(const case_data::Case& input,
+                   const std::vector<store::TopologyEvent>& events) {
+  Json json = Json::array();
+  for (const store::TopologyEvent& event : events) {
+    json.push_back(
+        {{"kind", name_of(event.kind)},
+         {"designs", event.designs},
+         {"evaluation", event.evaluation},
+         {"parameters",
+          files::named_json(case_data::design_names(input), event.design)},
+         {"message", event.message}});
+  }
+  return json;
+}
+
 /// Which response each envelope has its value from.
 void add_envelopes(const case_data::Case& input, const VectorX& responses,
                    Json& json) {
@@ -296,8 +312,14 @@ nlohmann::ordered_json result_json(const case_data::Case& input,
   if (!result.refrozen.empty()) {
     json["refrozen"] = refrozen_json(input, result.refrozen);
   }
+  if (!result.topology.empty()) {
+    json["topology"] = topology_json(input, result.topology);
+  }
   if (best != nullptr) {
     json["film"] = forward::film_json(best->film);
+    if (!best->film.popped.empty()) {
+      json["popped"] = forward::popped_json(best->film);
+    }
     json["tet"] = forward::tet_json(best->tet);
     json["fea"] = forward::fea_json(best->fea);
   }

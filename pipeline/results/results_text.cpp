@@ -73,6 +73,20 @@ std::string free_text(const case_data::DesignRow& row, const VectorX& errors) {
                    row.vector == nullptr ? "" : fmt::format("{} ", count));
 }
 
+std::string popped_text(const case_data::Case& input,
+                        const settle::FilmReport& film) {
+  std::string text;
+  for (const settle::PulledFilm& popped : film.popped) {
+    text += fmt::format(
+        "  film {}, pulled from {} where films met as none keeps: area {:.6g} "
+        "{}, about ({:.4g}, {:.4g}, {:.4g})\n",
+        popped.name, popped.pulled_from, popped.area,
+        input.units.unit_of(Dimension::Area), popped.place.x(),
+        popped.place.y(), popped.place.z());
+  }
+  return text;
+}
+
 /// What another mesh changed most, relative to the answer.
 std::string shift_text(const case_data::Case& input,
                        const store::Refreeze& refreeze, const VectorX& answer) {
@@ -265,6 +279,10 @@ std::string result_text(const case_data::Case& input,
     text += fmt::format("  frozen anew at evaluation {}: {}{}\n", r.evaluation,
                         r.reason, shift_text(input, r, best.responses));
   }
+  for (const store::TopologyEvent& event : result.topology) {
+    text += "  " + store::event_text(input, event) + "\n";
+  }
+  text += popped_text(input, best.film);
   if (result.eigen) {
     text += forward::eigen_text(*result.eigen);
   }
@@ -336,6 +354,7 @@ std::string film_text(const case_data::Case& input,
       film.residual_bound, film.min_eigenvalue, settle::index_text(film),
       film.smallest_neck, input.units.length, film.neck_position.x(),
       film.neck_position.y(), film.neck_position.z());
+  text += popped_text(input, film);
   for (const settle::BodyState& body : film.bodies) {
     text += fmt::format("  body {}: volume {:.8g} {}, pressure {:.6g} {}\n",
                         body.name, body.volume,

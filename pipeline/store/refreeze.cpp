@@ -16,6 +16,7 @@ namespace meniscus::store {
 namespace {
 
 constexpr const char* kRefrozen = "frozen at evaluation ";
+constexpr const char* kRejoined = "joined at evaluation ";
 // The smallest dihedral angle, over that of the freeze.
 constexpr double kFlatter = 0.5;
 // Designs are one within this part of the ranges, and near within that.
@@ -111,8 +112,13 @@ std::string refrozen_model(int evaluation) {
   return fmt::format("{}{}", kRefrozen, evaluation);
 }
 
+std::string rejoined_model(int evaluation) {
+  return fmt::format("{}{}", kRejoined, evaluation);
+}
+
 bool is_study_model(const std::string& model) {
-  return model == kStudyModel || model.rfind(kRefrozen, 0) == 0;
+  return model == kStudyModel || model.rfind(kRefrozen, 0) == 0 ||
+         model.rfind(kRejoined, 0) == 0;
 }
 
 bool is_beyond_reach(const case_data::Case& input,
@@ -145,7 +151,8 @@ std::string answering_model(const std::vector<EvaluationRecord>& records,
   std::vector<std::string> begun = {kStudyModel};
   std::set<std::string> knowing;
   for (const EvaluationRecord& record : records) {
-    if (record.failure || !is_study_model(record.model)) {
+    if (record.failure || !is_study_model(record.model) ||
+        record.model.rfind(kRejoined, 0) == 0) {
       continue;
     }
     if (std::find(begun.begin(), begun.end(), record.model) == begun.end()) {
@@ -184,7 +191,8 @@ case_data::Case frozen_as_answered(case_data::Case input,
   while (model != kStudyModel) {
     const auto at = std::find_if(
         records.begin(), records.end(), [&](const EvaluationRecord& record) {
-          return refrozen_model(record.number) == model;
+          return refrozen_model(record.number) == model ||
+                 rejoined_model(record.number) == model;
         });
     if (at == records.end()) {
       return input;
@@ -196,6 +204,22 @@ case_data::Case frozen_as_answered(case_data::Case input,
     input = case_films::frozen_at(std::move(input), *design);
   }
   return input;
+}
+
+std::optional<EvaluationRecord> rejoined_beside(
+    const case_data::Case& input, const std::vector<EvaluationRecord>& records,
+    const VectorX& best) {
+  std::optional<EvaluationRecord> nearest;
+  double least = kNear;
+  for (const EvaluationRecord& record : records) {
+    const double distance = design_distance(input, record.inputs, best);
+    if (record.failure && record.failure->kind == FailureKind::FilmRejoins &&
+        distance < least) {
+      nearest = record;
+      least = distance;
+    }
+  }
+  return nearest;
 }
 
 std::optional<Refreeze> find_refreeze(const FrozenStage& stage) {

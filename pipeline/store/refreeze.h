@@ -28,6 +28,10 @@ inline constexpr int kMostRefreezes = 10;
 /// How the database names a model: "frozen at evaluation 12".
 std::string refrozen_model(int evaluation);
 
+/// That of a sweep's designs at which films join in another way:
+/// "joined at evaluation 12". It answers for them alone.
+std::string rejoined_model(int evaluation);
+
 /// Of the case's own resolution: the first model, or one frozen later.
 bool is_study_model(const std::string& model);
 
@@ -35,8 +39,8 @@ bool is_study_model(const std::string& model);
 int count_of_model(const std::vector<EvaluationRecord>& records,
                    const std::string& model);
 
-/// The last of these models to begin; kStudyModel when none has evaluated a
-/// design. `answer`: of those that have evaluated it.
+/// The last of these models to begin that is no rejoined one; kStudyModel when
+/// none has evaluated a design. `answer`: of those that have evaluated it.
 std::string answering_model(const std::vector<EvaluationRecord>& records,
                             const std::optional<VectorX>& answer = {});
 
@@ -68,6 +72,12 @@ bool is_beyond_reach(const case_data::Case& input,
 
 /// Designs beyond reach, after which a search is ended early for a new model.
 inline constexpr int kMostBeyond = 6;
+
+/// Of the records that failed because films join in another way the one nearest
+/// to `best`, within a quarter of the ranges.
+std::optional<EvaluationRecord> rejoined_beside(
+    const case_data::Case& input, const std::vector<EvaluationRecord>& records,
+    const VectorX& best);
 
 /// Where the study should go on with a new model, shift not filled in: at its
 /// best design when the elements there have become flat, when so many designs

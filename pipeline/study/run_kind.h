@@ -55,6 +55,14 @@ StudyOutcome fit_scan(const StudyTask& task);
 StudyOutcome minimize(const StudyTask& task);
 /// Looks at every design of a grid or a sample.
 StudyOutcome sweep(const StudyTask& task);
+/// These; variables without levels in a grid stay where `start` has them.
+std::vector<VectorX> designs_of_sweep(const case_data::Case& input,
+                                      const VectorX& start);
+/// What a sweep of so many designs comes to by the records of those looked at,
+/// in order, each of the model that answered.
+StudyOutcome outcome_of_sweep(
+    const StudyTask& task, int designs,
+    const std::vector<store::EvaluationRecord>& records);
 /// How far the responses of the start spread when the design scatters.
 StudyOutcome tolerance(const StudyTask& task);
 /// Compromises of two objectives by bounds on the second.

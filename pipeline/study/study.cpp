@@ -608,23 +608,27 @@ void StudyRun::count() {
   const auto is_counted = [&](const store::EvaluationRecord& record) {
     return store::is_study_model(record.model) &&
            (record.failure || record.model == store::kStudyModel ||
-            std::any_of(result_.refrozen.begin(), result_.refrozen.end(),
-                        [&](const store::Refreeze& at) {
-                          return store::refrozen_model(at.evaluation) ==
-                                 record.model;
-                        }));
+            std::any_of(
+                result_.refrozen.begin(), result_.refrozen.end(),
+                [&](const store::Refreeze& at) {
+                  return store::refrozen_model(at.evaluation) == record.model ||
+                         store::rejoined_model(at.evaluation) == record.model;
+                }));
   };
-  for (const store::EvaluationRecord& record : store_.all()) {
-    if (is_counted(record)) {
-      ++result_.evaluations;
-      result_.failed_evaluations += record.failure ? 1 : 0;
-      auto& models = result_.evaluations_of_models;
-      const auto at = std::find_if(
-          models.begin(), models.end(),
-          [&](const auto& model) { return model.first == record.model; });
-      ++(at != models.end() ? *at : models.emplace_back(record.model, 0))
-            .second;
-    }
+  std::vector<store::EvaluationRecord> counted = store_.all();
+  counted.erase(
+      std::remove_if(counted.begin(), counted.end(),
+                     [&](const auto& record) { return !is_counted(record); }),
+      counted.end());
+  result_.topology = store::topology_events(input_, counted);
+  for (const store::EvaluationRecord& record : counted) {
+    ++result_.evaluations;
+    result_.failed_evaluations += record.failure ? 1 : 0;
+    auto& models = result_.evaluations_of_models;
+    const auto at = std::find_if(
+        models.begin(), models.end(),
+        [&](const auto& model) { return model.first == record.model; });
+    ++(at != models.end() ? *at : models.emplace_back(record.model, 0)).second;
   }
   result_.seconds += own_seconds_;
 }

@@ -20,6 +20,7 @@
 #include "pipeline/responses/worst_loads.h"
 #include "pipeline/store/refreeze.h"
 #include "pipeline/store/study_store.h"
+#include "pipeline/store/topology_events.h"
 #include "pipeline/study/front_figures.h"
 #include "pipeline/study/ledger.h"
 #include "pipeline/study/progress_tracker.h"
@@ -87,6 +88,7 @@ struct RunResult {
   std::optional<forward::EigenFigures> eigen;  // of the best design
   std::optional<CoarseFigures> coarse;    // what study.coarse_first asked for
   std::vector<store::Refreeze> refrozen;  // models after the first, in order
+  std::vector<store::TopologyEvent> topology;  // of the designs looked at
   /// Designs evaluated at the case's own resolution, each once per frozen
   /// model, finite-difference ones included: as many as the database holds.
   int evaluations = 0;

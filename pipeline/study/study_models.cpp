@@ -1,6 +1,8 @@
 #include "pipeline/study/study_models.h"
 
 #include <algorithm>
+#include <map>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -8,6 +10,7 @@
 #include "core/error.h"
 #include "pipeline/case_films/film_advice.h"
 #include "pipeline/case_films/film_start.h"
+#include "pipeline/store/incumbent.h"
 #include "pipeline/store/stored_case.h"
 #include "pipeline/study/held_margins.h"
 
@@ -124,12 +127,107 @@ bool StudyModels::may_refreeze() const {
 }
 
 void StudyModels::conduct() {
+  conduct_in_reach();
+  sweep_rejoined();
+  while (search_rejoined()) {
+  }
+}
+
+/// On the stage's model, and on new ones where it has left the reach of that.
+void StudyModels::conduct_in_reach() {
   using Leave = StudyStage::Leave;
   do {
     now_.stage->conduct(may_refreeze() ? Leave::Early : Leave::Late);
   } while (refreeze());
   if (now_.stage->stopped_early()) {
     now_.stage->conduct();
+  }
+}
+
+/// A sweep whose case asks for pops.
+bool StudyModels::pops_on_the_way() const {
+  return input_.study.kind == case_data::StudyKind::Sweep &&
+         input_.study.refreeze && input_.resolution.pop;
+}
+
+void StudyModels::sweep_rejoined() {
+  const StudyOutcome& first = now_.stage->outcome();
+  if (!pops_on_the_way() || first.sweep->looked_at < first.sweep->designs) {
+    return;
+  }
+  std::vector<store::EvaluationRecord> records =
+      now_.stage->evaluator().evaluate_all(now_.stage->swept(), "sweep");
+  std::map<std::string, case_data::Case> frozen;  // by model
+  std::set<int> tried;
+  const auto rejoins = [&](const store::EvaluationRecord& record) {
+    return record.failure && record.failure->kind == FailureKind::FilmRejoins &&
+           tried.count(record.number) == 0;
+  };
+  for (int round = 0; round < store::kMostRefreezes; ++round) {
+    const auto at = std::find_if(records.begin(), records.end(), rejoins);
+    if (at == records.end()) {
+      break;
+    }
+    tried.insert(at->number);
+    store::Refreeze wanted{.evaluation = at->number,
+                           .design = at->inputs,
+                           .reason = "films join in another way there",
+                           .shift = {},
+                           .responses = {}};
+    log(fmt::format("a new model is frozen at evaluation {}: {}",
+                    wanted.evaluation, wanted.reason));
+    const std::string name = store::rejoined_model(wanted.evaluation);
+    const auto before = frozen.find(at->model);
+    const case_data::Case input = case_films::frozen_at(
+        before == frozen.end() ? case_ : before->second, wanted.design);
+    update_time_limit();
+    const std::unique_ptr<StudyStage> stage = stage_at(wanted, name, input);
+    if (stage == nullptr) {
+      continue;
+    }
+    std::vector<VectorX> designs;
+    std::vector<std::size_t> places;
+    for (std::size_t k = 0; k < records.size(); ++k) {
+      if (rejoins(records[k]) || records[k].inputs == wanted.design) {
+        designs.push_back(records[k].inputs);
+        places.push_back(k);
+      }
+    }
+    const std::vector<store::EvaluationRecord> found =
+        stage->evaluator().evaluate_all(designs, "sweep");
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      records[places[k]] = found[k];
+    }
+    earlier_seconds_ += stage->evaluator().seconds();
+    frozen.emplace(name, input);
+    refrozen_.push_back(std::move(wanted));
+  }
+  if (!frozen.empty()) {
+    take_swept(records, frozen);
+  }
+}
+
+/// The outcome of a sweep by what several models answered; its best design is
+/// put on a model of its own where it is of a later one.
+void StudyModels::take_swept(
+    const std::vector<store::EvaluationRecord>& records,
+    const std::map<std::string, case_data::Case>& frozen) {
+  StudyOutcome outcome = now_.stage->sum_up(records);
+  const auto best = std::find_if(
+      records.begin(), records.end(), [&](const store::EvaluationRecord& r) {
+        return !r.failure && r.inputs == outcome.best;
+      });
+  if (best == records.end() || frozen.count(best->model) == 0) {
+    now_.stage->leave(std::move(outcome));
+    return;
+  }
+  if (go_on_at({.evaluation = best->number,
+                .design = best->inputs,
+                .reason = "the answer on a mesh of its own",
+                .shift = {},
+                .responses = best->responses},
+               frozen.at(best->model))) {
+    now_.stage->judge(outcome, input_);
   }
 }
 
@@ -143,8 +241,9 @@ bool StudyModels::refreeze() {
   return wanted && go_on_at(*std::move(wanted), working());
 }
 
-bool StudyModels::go_on_at(store::Refreeze wanted,
-                           const case_data::Case& from) {
+/// A model frozen at a design of one frozen of `from`; its shift is filled in.
+std::optional<StudyModels::Model> StudyModels::model_at(
+    store::Refreeze& wanted, const case_data::Case& from) {
   log(fmt::format("a new model is frozen at evaluation {}: {}",
                   wanted.evaluation, wanted.reason));
   auto input = std::make_unique<case_data::Case>(
@@ -157,11 +256,21 @@ bool StudyModels::go_on_at(store::Refreeze wanted,
   std::unique_ptr<StudyStage> stage =
       stage_at(wanted, store::refrozen_model(wanted.evaluation), *input);
   if (stage == nullptr) {
+    return std::nullopt;
+  }
+  if (wanted.responses.size() > 0) {  // else that design has failed before
+    wanted.shift = stage->start().responses - wanted.responses;
+  }
+  return Model{.frozen = std::move(input), .stage = std::move(stage)};
+}
+
+bool StudyModels::go_on_at(store::Refreeze wanted,
+                           const case_data::Case& from) {
+  std::optional<Model> next = model_at(wanted, from);
+  if (!next) {
     return false;
   }
-  wanted.shift = stage->start().responses - wanted.responses;
-  Model left = std::exchange(
-      now_, Model{.frozen = std::move(input), .stage = std::move(stage)});
+  Model left = std::exchange(now_, *std::move(next));
   if (holds_margins(working())) {
     before_ = std::move(left);
   } else {
@@ -171,6 +280,62 @@ bool StudyModels::go_on_at(store::Refreeze wanted,
   refrozen_.push_back(std::move(wanted));
   note_kept();
   return true;
+}
+
+/// Of a minimum or a match, by what their outcomes have.
+bool StudyModels::is_better_than(const Model& other) const {
+  const auto record_of = [&](const StudyStage& stage) {
+    return store_.find(stage.model_name(), stage.outcome().best);
+  };
+  const auto own = record_of(*now_.stage);
+  const auto others = record_of(*other.stage);
+  if (!own || own->failure || !others || others->failure) {
+    return own && !own->failure;
+  }
+  return input_.study.objective
+             ? store::is_better(
+                   store::merit_of(input_.study, own->responses),
+                   store::merit_of(input_.study, others->responses))
+             : now_.stage->outcome().objective <
+                   other.stage->outcome().objective;
+}
+
+bool StudyModels::search_rejoined() {
+  const StudyOutcome& outcome = now_.stage->outcome();
+  if (!may_refreeze() || !input_.resolution.pop || outcome.ended_by_limit() ||
+      evaluations_left() <= 0) {
+    return false;
+  }
+  const std::optional<store::EvaluationRecord> beyond =
+      store::rejoined_beside(input_, now_.stage->records(), outcome.best);
+  if (!beyond) {
+    return false;
+  }
+  store::Refreeze wanted{
+      .evaluation = beyond->number,
+      .design = beyond->inputs,
+      .reason = "films join in another way there, beside the best design",
+      .shift = {},
+      .responses = {}};
+  std::optional<Model> next = model_at(wanted, working());
+  if (!next) {
+    return false;
+  }
+  const int spent = now_.stage->evaluations();
+  Model left = std::exchange(now_, *std::move(next));
+  earlier_evaluations_ += spent;
+  options_.start.reset();
+  refrozen_.push_back(std::move(wanted));
+  note_kept();
+  conduct_in_reach();
+  earlier_evaluations_ -= spent;
+  if (is_better_than(left)) {
+    end(std::move(left));
+    return true;
+  }
+  log("the films that are beyond are no better: the study stays before them");
+  end(std::exchange(now_, std::move(left)));
+  return false;
 }
 
 bool StudyModels::has_dragged_answer() const {

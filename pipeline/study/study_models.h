@@ -3,6 +3,7 @@
 #pragma once
 
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -32,6 +33,9 @@ class StudyModels {
   /// Conducts the stage, and on each new model where it has left the reach of
   /// the last.
   void conduct();
+  /// The designs of a sweep at which films join in another way, on models that
+  /// are frozen anew there, each for as many of them as it serves.
+  void sweep_rejoined();
   /// Goes on with a new model where the study has left the reach of the last;
   /// false when there is none.
   bool refreeze();
@@ -93,17 +97,28 @@ class StudyModels {
   double elapsed_seconds() const { return timer_.seconds(); }
 
  private:
-  /// `from`: the case that its model is frozen of, but for the design.
-  bool go_on_at(store::Refreeze wanted, const case_data::Case& from);
-  void note_kept();
-  std::unique_ptr<StudyStage> stage_at(const store::Refreeze& refreeze,
-                                       const std::string& name,
-                                       const case_data::Case& input);
   /// A stage, and what its model is frozen of where that is not case_.
   struct Model {
     std::unique_ptr<case_data::Case> frozen;
     std::unique_ptr<StudyStage> stage;
   };
+  std::optional<Model> model_at(store::Refreeze& wanted,
+                                const case_data::Case& from);
+  bool is_better_than(const Model& other) const;
+  void conduct_in_reach();
+  bool pops_on_the_way() const;
+  /// Goes on beyond designs at which films join in another way, where those
+  /// beside the best one are; false where there are none, or nothing better is
+  /// found.
+  bool search_rejoined();
+  /// `from`: the case that its model is frozen of, but for the design.
+  bool go_on_at(store::Refreeze wanted, const case_data::Case& from);
+  void take_swept(const std::vector<store::EvaluationRecord>& records,
+                  const std::map<std::string, case_data::Case>& frozen);
+  void note_kept();
+  std::unique_ptr<StudyStage> stage_at(const store::Refreeze& refreeze,
+                                       const std::string& name,
+                                       const case_data::Case& input);
   struct KeptStart {
     case_data::Case frozen;  // what its model is frozen of
     store::Refreeze at;

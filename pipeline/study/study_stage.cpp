@@ -135,6 +135,19 @@ void StudyStage::conduct(Leave leave, double reach) {
   evaluator_.set_observer({});
 }
 
+std::vector<VectorX> StudyStage::swept() const {
+  return designs_of_sweep(input_, start_.design);
+}
+
+StudyOutcome StudyStage::sum_up(
+    const std::vector<store::EvaluationRecord>& records) {
+  return outcome_of_sweep({.input = input_,
+                           .evaluator = evaluator_,
+                           .options = options_,
+                           .start = start_.design},
+                          static_cast<int>(records.size()), records);
+}
+
 void StudyStage::leave(StudyOutcome outcome) {
   evaluator_.set_observer({});
   outcome_ = std::move(outcome);

@@ -49,6 +49,10 @@ class StudyStage {
   std::optional<store::Refreeze> wanted(const VectorX& best,
                                         bool converged) const;
   const StudyOutcome& outcome() const { return outcome_; }
+  /// Of a sweep, its designs; and its outcome by records of them, in their
+  /// order, of several models.
+  std::vector<VectorX> swept() const;
+  StudyOutcome sum_up(const std::vector<store::EvaluationRecord>& records);
   /// Ends it from outside, with that outcome.
   void leave(StudyOutcome outcome);
   /// Of the designs that it has asked for.

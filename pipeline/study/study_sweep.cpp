@@ -5,7 +5,6 @@
 #include "optimize/samples/sampling.h"
 #include "pipeline/case_data/response_entries.h"
 #include "pipeline/store/incumbent.h"
-#include "pipeline/store/refreeze.h"
 #include "pipeline/study/run_kind.h"
 
 namespace meniscus::study {
@@ -13,34 +12,21 @@ namespace meniscus::study {
 namespace {
 
 /// Variables of a grid without levels stay where they start.
-std::vector<VectorX> grid_designs(const StudyTask& task) {
-  std::vector<int> levels = task.input.study.levels;
+std::vector<VectorX> grid_designs(const case_data::Case& input,
+                                  const VectorX& start) {
+  std::vector<int> levels = input.study.levels;
   std::replace(levels.begin(), levels.end(), 0, 1);
   std::vector<VectorX> designs = samples::designs_of(
-      variables_of(task.input, task.start), samples::grid_samples(levels));
+      variables_of(input, start), samples::grid_samples(levels));
   for (VectorX& design : designs) {
     for (std::size_t k = 0; k < levels.size(); ++k) {
-      if (task.input.study.levels[k] == 0) {
+      if (input.study.levels[k] == 0) {
         const auto j = static_cast<Eigen::Index>(k);
-        design[j] = task.start[j];
+        design[j] = start[j];
       }
     }
   }
   return designs;
-}
-
-std::vector<VectorX> designs_of_sweep(const StudyTask& task) {
-  const case_data::StudyEntry& study = task.input.study;
-  if (study.method == "grid") {
-    return grid_designs(task);
-  }
-  const int variables = static_cast<int>(task.input.design.size());
-  return samples::designs_of(
-      variables_of(task.input, task.start),
-      study.method == "sobol" ? samples::sobol_samples(variables, study.count)
-                              : samples::latin_hypercube_samples(
-                                    variables, study.count,
-                                    static_cast<std::uint64_t>(study.seed)));
 }
 
 Constraint constraint_of(const case_data::Case& input,
@@ -57,10 +43,15 @@ void choose_best(const StudyTask& task,
                  const std::vector<store::EvaluationRecord>& records,
                  StudyOutcome& outcome) {
   const case_data::StudyEntry& study = task.input.study;
-  const store::EvaluationRecord* best =
-      study.objective ? store::best_by_objective(
-                            study, records, store::answering_model(records))
-                      : nullptr;
+  const store::EvaluationRecord* best = nullptr;
+  for (const store::EvaluationRecord& record : records) {
+    if (study.objective && !record.failure &&
+        (best == nullptr ||
+         store::is_better(store::merit_of(study, record.responses),
+                          store::merit_of(study, best->responses)))) {
+      best = &record;
+    }
+  }
   if (best == nullptr) {
     return;
   }
@@ -88,12 +79,32 @@ void choose_best(const StudyTask& task,
 
 }  // namespace
 
+std::vector<VectorX> designs_of_sweep(const case_data::Case& input,
+                                      const VectorX& start) {
+  const case_data::StudyEntry& study = input.study;
+  if (study.method == "grid") {
+    return grid_designs(input, start);
+  }
+  const int variables = static_cast<int>(input.design.size());
+  return samples::designs_of(
+      variables_of(input, start),
+      study.method == "sobol" ? samples::sobol_samples(variables, study.count)
+                              : samples::latin_hypercube_samples(
+                                    variables, study.count,
+                                    static_cast<std::uint64_t>(study.seed)));
+}
+
 StudyOutcome sweep(const StudyTask& task) {
-  const std::vector<VectorX> designs = designs_of_sweep(task);
-  const std::vector<store::EvaluationRecord> records =
-      task.evaluator.evaluate_all(designs, "sweep");
+  const std::vector<VectorX> designs = designs_of_sweep(task.input, task.start);
+  return outcome_of_sweep(task, static_cast<int>(designs.size()),
+                          task.evaluator.evaluate_all(designs, "sweep"));
+}
+
+StudyOutcome outcome_of_sweep(
+    const StudyTask& task, int designs,
+    const std::vector<store::EvaluationRecord>& records) {
   StudyOutcome outcome{.best = task.start};
-  outcome.sweep = sweep_figures(static_cast<int>(designs.size()), records);
+  outcome.sweep = sweep_figures(designs, records);
   const SweepFigures& figures = *outcome.sweep;
   if (figures.looked_at < figures.designs) {
     outcome.status = RunStatus::Stopped;

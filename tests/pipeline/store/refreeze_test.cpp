@@ -56,6 +56,33 @@ TEST(Refreeze, IsWantedAtTheBestDesignBesideInvertedOnes) {
   EXPECT_FALSE(found({answered(1, 25.0), answered(2, 27.0)}, 27.0));
 }
 
+// A sweep's models answer for the designs that they were made for; the way to
+// one of them is in the database, too.
+TEST(Refreeze, RejoinedModelsAnswerForTheirDesignsAlone) {
+  const case_data::Case input = strut_case();
+  EXPECT_TRUE(store::is_study_model(store::rejoined_model(3)));
+  const std::vector<store::EvaluationRecord> records = {
+      answered(1, 25.0),
+      answered(2, 26.0),
+      inverted(3, 30.0, FailureKind::FilmRejoins),
+      inverted(4, 29.0, FailureKind::FilmRejoins),
+      inverted(5, 31.9, FailureKind::FilmRejoins),
+      answered(6, 30.0, store::rejoined_model(3))};
+  EXPECT_EQ(store::answering_model(records), "base");
+  const auto beside = [&](double best) {
+    return store::rejoined_beside(input, records, VectorX::Constant(1, best));
+  };
+  ASSERT_TRUE(beside(27.0));
+  EXPECT_EQ(beside(27.0)->number, 4);
+  EXPECT_FALSE(beside(25.0));  // a third of the range off
+  std::vector<store::EvaluationRecord> later = records;
+  later.push_back(answered(7, 30.0, store::refrozen_model(6)));
+  const case_data::Case frozen =
+      store::frozen_as_answered(input, later, VectorX::Constant(1, 30.0));
+  ASSERT_EQ(frozen.earlier_freezes.size(), 1U);
+  EXPECT_EQ(frozen.earlier_freezes[0][0], 25.0);
+}
+
 // A study that returns to its start begins that model last; one that goes on
 // later may end on the model before.
 TEST(Refreeze, TheAnsweringModelIsTheLastThatKnowsTheAnswer) {
