@@ -49,6 +49,8 @@ struct FilmSolidReport {
   double gap = 0.0;            // between the faces at an edge, the largest
   double film_to_solid = 0.0;  // farthest film vertex from its patch
   double solid_to_film = 0.0;  // farthest of samples of the patches from facets
+  std::string off_film;        // where the larger of the two is
+  Vec3 off_place = Vec3::Zero();
   double tangent_break = 0.0;  // between patches of one film, largest [degree]
   std::string break_film;      // where that is
   Vec3 break_place = Vec3::Zero();

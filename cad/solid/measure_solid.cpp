@@ -73,11 +73,20 @@ std::vector<double> places_in(const std::vector<double>& knots) {
   return result;
 }
 
+/// Where the farthest of both ways is, before it is counted.
+void note_place(FilmSolidReport& report, const std::string& film,
+                const Vec3& place, double off) {
+  if (off > std::max(report.film_to_solid, report.solid_to_film)) {
+    report.off_film = film;
+    report.off_place = place;
+  }
+}
+
 /// From the surface along its normal to the facets, either way. `part_of`: 0
 /// for every facet.
-void measure_samples(const SplineSurface& surface, const FacetTree& tree,
-                     const std::vector<int>& part_of, double edge,
-                     FilmSolidReport& report) {
+void measure_samples(const SplineSurface& surface, const std::string& film,
+                     const FacetTree& tree, const std::vector<int>& part_of,
+                     double edge, FilmSolidReport& report) {
   for (const double a : places_in(surface.knots_a)) {
     for (const double b : places_in(surface.knots_b)) {
       const SurfaceJet jet = jet_of(surface, {a, b});
@@ -85,8 +94,9 @@ void measure_samples(const SplineSurface& surface, const FacetTree& tree,
       const Vec3 above = jet.point + edge * normal;
       const auto hit = tree.first_hit(above, -normal, part_of, -1);
       if (hit && hit->distance < 2.0 * edge) {
-        report.solid_to_film =
-            std::max(report.solid_to_film, std::abs(hit->distance - edge));
+        const double off = std::abs(hit->distance - edge);
+        note_place(report, film, jet.point, off);
+        report.solid_to_film = std::max(report.solid_to_film, off);
       }
     }
   }
@@ -140,12 +150,12 @@ void measure_film(const FilmPiece& film, const FilmFaces& faces,
   for (std::size_t p = 0; p < faces.patches.size(); ++p) {
     const FittedPatch& patch = faces.patches[p];
     for (std::size_t k = 0; k < patch.vertices.size(); ++k) {
-      report.film_to_solid = std::max(
-          report.film_to_solid,
-          distance_of(faces, p, film.cut.mesh.points[patch.vertices[k]],
-                      patch.at[k]));
+      const Vec3& place = film.cut.mesh.points[patch.vertices[k]];
+      const double off = distance_of(faces, p, place, patch.at[k]);
+      note_place(report, film.name, place, off);
+      report.film_to_solid = std::max(report.film_to_solid, off);
     }
-    measure_samples(patch.surface, tree, part_of, edge, report);
+    measure_samples(patch.surface, film.name, tree, part_of, edge, report);
   }
   measure_breaks(film, faces, report);
 }

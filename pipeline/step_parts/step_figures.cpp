@@ -12,6 +12,12 @@ std::string number_of(int count, const char* what) {
   return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }
 
+std::string at_place(const std::string& film, const Vec3& place) {
+  return film.empty() ? ""
+                      : fmt::format(", in {} at ({:.4g}, {:.4g}, {:.4g})", film,
+                                    place[0], place[1], place[2]);
+}
+
 }  // namespace
 
 solid::FilmSolidReport summed(
@@ -24,6 +30,11 @@ solid::FilmSolidReport summed(
     sum.cones += one.cones;
     sum.spheres += one.spheres;
     sum.gap = std::max(sum.gap, one.gap);
+    if (std::max(one.film_to_solid, one.solid_to_film) >
+        std::max(sum.film_to_solid, sum.solid_to_film)) {
+      sum.off_film = one.off_film;
+      sum.off_place = one.off_place;
+    }
     sum.film_to_solid = std::max(sum.film_to_solid, one.film_to_solid);
     sum.solid_to_film = std::max(sum.solid_to_film, one.solid_to_film);
     if (one.tangent_break > sum.tangent_break) {
@@ -65,20 +76,15 @@ void tell_step(const StepExport& options, const solid::FilmSolidReport& film,
       Severity::Info,
       fmt::format(
           "gap at edges {:.2g} {} at most; film to faces {:.2g} {}, faces "
-          "to film {:.2g} {} ({:.2g} of its edge)",
+          "to film {:.2g} {} ({:.2g} of its edge){}",
           film.gap, unit, film.film_to_solid, unit, film.solid_to_film, unit,
-          std::max(film.film_to_solid, film.solid_to_film) / options.edge));
-  monitor.log(
-      Severity::Info,
-      fmt::format("tangent breaks between faces of one film {:.2g} "
-                  "degrees at most{}",
-                  film.tangent_break,
-                  film.break_film.empty()
-                      ? ""
-                      : fmt::format(", in {} at ({:.4g}, {:.4g}, "
-                                    "{:.4g})",
-                                    film.break_film, film.break_place[0],
-                                    film.break_place[1], film.break_place[2])));
+          std::max(film.film_to_solid, film.solid_to_film) / options.edge,
+          at_place(film.off_film, film.off_place)));
+  monitor.log(Severity::Info,
+              fmt::format("tangent breaks between faces of one film {:.2g} "
+                          "degrees at most{}",
+                          film.tangent_break,
+                          at_place(film.break_film, film.break_place)));
 }
 
 }  // namespace meniscus::step_parts
