@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <numeric>
@@ -25,6 +26,7 @@ constexpr double kTightTurn = 0.6;  // of an arc that is a corner [rad]
 // rectangle's, where all others are blunter.
 constexpr double kSquareTurn = 1.0;
 constexpr double kBlunter = 0.8;
+constexpr double kSlender = 2.5;  // a square has 1.27, a strip of 5:1 2.3
 constexpr double kEighth = std::numbers::pi / 4.0;
 
 /// Vertices less edges plus facets: 1 for a disk, 2 for a sphere.
@@ -228,6 +230,55 @@ Eigen::MatrixXd cube_measures(const FilmMesh& mesh) {
   return measures;
 }
 
+/// Square of the length over the area, of a disk 1.
+double slenderness(const RimCurve& curve) {
+  constexpr int kPlaces = 400;
+  Points around;
+  for (int k = 0; k < kPlaces; ++k) {
+    around.push_back(curve.point(curve.length() * k / kPlaces));
+  }
+  const double area = polygon_area_vector(around).norm();
+  return area > 0.0
+             ? curve.length() * curve.length() / (4.0 * std::numbers::pi * area)
+             : std::numeric_limits<double>::infinity();
+}
+
+/// Of an outline that is a bent strip, as an arch on two legs, the four corners
+/// at its two ends: sides between neighbouring corners, short and with as much
+/// of the outline on either hand. Empty where it is no strip.
+std::vector<double> strip_corners(const RimCurve& curve) {
+  std::vector<double> places;
+  for (const double place : curve.corners()) {
+    if (curve.corner_angle(curve.piece_at(place)) > kSharpTurn) {
+      places.push_back(place);
+    }
+  }
+  if (places.size() <= kSeams || slenderness(curve) < kSlender) {
+    return {};
+  }
+  std::sort(places.begin(), places.end());
+  const std::size_t n = places.size();
+  const auto way = [&](std::size_t from, std::size_t to) {
+    const double d = places[to % n] - places[from % n];
+    return d > 0.0 ? d : d + curve.length();
+  };
+  double best = std::numeric_limits<double>::infinity();
+  std::vector<double> result;
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = i + 2; j < n && j + 1 < i + n; ++j) {
+      const double one = way(i + 1, j);
+      const double other = way(j + 1, i);
+      const double score =
+          way(i, i + 1) + way(j, j + 1) + std::abs(one - other);
+      if (score < best) {
+        best = score;
+        result = {places[i], places[i + 1], places[j], places[(j + 1) % n]};
+      }
+    }
+  }
+  return result;
+}
+
 /// Places of the corners of a four-sided patch's outline; empty for another.
 std::vector<double> four_corners(const RimCurve& curve) {
   std::vector<double> places = curve.corners();
@@ -238,7 +289,7 @@ std::vector<double> four_corners(const RimCurve& curve) {
       (places.size() > kSeams &&
        (angle(kSeams - 1) <= kSquareTurn ||
         angle(kSeams) > kBlunter * angle(kSeams - 1)))) {
-    return {};
+    return strip_corners(curve);
   }
   places.resize(kSeams);
   return places;

@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "evolve/films/joined_sides.h"
 #include "core/error.h"
+#include "evolve/films/joined_sides.h"
 #include "evolve/films/shared_sides.h"
 #include "pipeline/case_data/case_checks.h"
 #include "pipeline/case_data/case_curves.h"
