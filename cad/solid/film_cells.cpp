@@ -26,7 +26,7 @@ constexpr double kTightTurn = 0.6;  // of an arc that is a corner [rad]
 // rectangle's, where all others are blunter.
 constexpr double kSquareTurn = 1.0;
 constexpr double kBlunter = 0.8;
-constexpr double kSlender = 2.5;  // a square has 1.27, a strip of 5:1 2.3
+constexpr double kSlender = 1.6;  // a square has 1.27, a strip of 3:1 1.7
 constexpr double kEighth = std::numbers::pi / 4.0;
 
 /// Vertices less edges plus facets: 1 for a disk, 2 for a sphere.
@@ -243,9 +243,29 @@ double slenderness(const RimCurve& curve) {
              : std::numeric_limits<double>::infinity();
 }
 
+/// A way along a rim, from a place of it on.
+struct RimWay {
+  double from = 0.0;
+  double length = 0.0;
+};
+
+/// Between a way against the rim's run and one along it, at the same shares.
+double mean_width(const RimCurve& curve, const RimWay& back,
+                  const RimWay& forth) {
+  constexpr int kPlaces = 40;
+  double sum = 0.0;
+  for (int k = 0; k <= kPlaces; ++k) {
+    const double share = static_cast<double>(k) / kPlaces;
+    sum += (curve.point(back.from - share * back.length) -
+            curve.point(forth.from + share * forth.length))
+               .norm();
+  }
+  return sum / (kPlaces + 1);
+}
+
 /// Of an outline that is a bent strip, as an arch on two legs, the four corners
-/// at its two ends: sides between neighbouring corners, short and with as much
-/// of the outline on either hand. Empty where it is no strip.
+/// at its two ends, two of neighbouring corners each, between which its long
+/// sides are nearest to each other. Empty where it is no strip.
 std::vector<double> strip_corners(const RimCurve& curve) {
   std::vector<double> places;
   for (const double place : curve.corners()) {
@@ -266,10 +286,8 @@ std::vector<double> strip_corners(const RimCurve& curve) {
   std::vector<double> result;
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = i + 2; j < n && j + 1 < i + n; ++j) {
-      const double one = way(i + 1, j);
-      const double other = way(j + 1, i);
-      const double score =
-          way(i, i + 1) + way(j, j + 1) + std::abs(one - other);
+      const double score = mean_width(curve, {places[i], way(j + 1, i)},
+                                      {places[i + 1], way(i + 1, j)});
       if (score < best) {
         best = score;
         result = {places[i], places[i + 1], places[j], places[(j + 1) % n]};

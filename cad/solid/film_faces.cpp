@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kNormalRounds = 3;
 constexpr double kSamePlane = 0.9;  // cosine
-constexpr int kMostHalvings = 3;
+constexpr int kMostHalvings = 5;
 
 class FaceBuilder {
  public:

@@ -169,7 +169,9 @@ bool FilmKnots::halve(const std::vector<FittedPatch>& patches,
     long_[root].assign(span_count(knots), 0);
   }
   for (std::size_t p = 0; p < patches.size(); ++p) {
-    mark_misses(static_cast<int>(p), patches[p]);
+    if (!is_folded(patches[p])) {  // finer knots fold the more
+      mark_misses(static_cast<int>(p), patches[p]);
+    }
     for (int side = 0; side < 4; ++side) {
       if (film_.cut.patches[p].rims[side] >= 0) {
         mark_gaps(static_cast<int>(p), side, brep);
