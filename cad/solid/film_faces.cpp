@@ -13,7 +13,9 @@ namespace {
 
 constexpr int kNormalRounds = 3;
 constexpr double kSamePlane = 0.9;  // cosine
-constexpr int kMostHalvings = 5;
+constexpr int kHalvings = 3;
+constexpr int kMostHalvings = 5;  // the last where faces are far off alone
+constexpr double kFarOff = 5.0;   // x the limit
 
 class FaceBuilder {
  public:
@@ -298,7 +300,9 @@ FilmFaces FaceBuilder::build() {
   for (int round = 0; round <= kMostHalvings; ++round) {
     fit_lines();
     faces.patches = fit_patches();
-    if (round == kMostHalvings || !knots_.halve(faces.patches, brep_)) {
+    if (round == kMostHalvings ||
+        !knots_.halve(faces.patches, brep_,
+                      round < kHalvings ? 1.0 : kFarOff)) {
       break;
     }
   }

@@ -109,7 +109,8 @@ void FilmKnots::mark(int patch, int side, std::size_t span) {
 
 /// Where a surface leaves its film, the spans along which the film's normal
 /// turns.
-void FilmKnots::mark_misses(int patch, const FittedPatch& fitted) {
+void FilmKnots::mark_misses(int patch, const FittedPatch& fitted,
+                            double times) {
   const std::array<std::vector<double>, 2>& knots = patch_knots_[patch];
   struct Cell {
     double off = 0.0;
@@ -123,7 +124,7 @@ void FilmKnots::mark_misses(int patch, const FittedPatch& fitted) {
     cell.samples.push_back(&miss);
   }
   for (const auto& [spans, cell] : cells) {
-    if (cell.off <= limits_.off) {
+    if (cell.off <= times * limits_.off) {
       continue;
     }
     // Samples of one row of the cell tell the turn along it.
@@ -163,14 +164,15 @@ void FilmKnots::mark_gaps(int patch, int side, const Brep& brep) {
   }
 }
 
-bool FilmKnots::halve(const std::vector<FittedPatch>& patches,
-                      const Brep& brep) {
+bool FilmKnots::halve(const std::vector<FittedPatch>& patches, const Brep& brep,
+                      double times) {
   for (const auto& [root, knots] : knots_) {
     long_[root].assign(span_count(knots), 0);
   }
   for (std::size_t p = 0; p < patches.size(); ++p) {
-    if (!is_folded(patches[p])) {  // finer knots fold the more
-      mark_misses(static_cast<int>(p), patches[p]);
+    // What three rounds have not unfolded finer knots fold the more.
+    if (times == 1.0 || !is_folded(patches[p])) {
+      mark_misses(static_cast<int>(p), patches[p], times);
     }
     for (int side = 0; side < 4; ++side) {
       if (film_.cut.patches[p].rims[side] >= 0) {

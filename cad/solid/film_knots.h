@@ -45,16 +45,17 @@ class FilmKnots {
   const std::vector<double>& of_line(std::size_t line) const {
     return line_knots_[line];
   }
-  /// Halves the spans in which patches leave the film or a rim by more than
-  /// the limits. False where there are none.
-  bool halve(const std::vector<FittedPatch>& patches, const Brep& brep);
+  /// Halves the spans in which patches leave the film by more than `times` the
+  /// limit, or a rim by more than its own. False where there are none.
+  bool halve(const std::vector<FittedPatch>& patches, const Brep& brep,
+             double times);
 
  private:
   void set_classes();
   void set_knots();
   void spread_knots();
   void mark(int patch, int side, std::size_t span);
-  void mark_misses(int patch, const FittedPatch& fitted);
+  void mark_misses(int patch, const FittedPatch& fitted, double times);
   void mark_gaps(int patch, int side, const Brep& brep);
 
   FilmOnRims film_;

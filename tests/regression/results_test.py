@@ -53,8 +53,9 @@ targets = { sway = 5.8e-3 }
 tolerance = 0.005
 """
 
-# What refreeze_test.py and pops_test.py look at.
-ELSEWHERE = {"envelopes", "norm_peaks", "refrozen", "popped", "topology"}
+# What multipliers_test.py, refreeze_test.py and pops_test.py look at.
+ELSEWHERE = {"envelopes", "norm_peaks", "refrozen", "popped", "topology",
+             "multipliers"}
 # Kinds of study with a part of result.json of their own.
 OTHER_STUDIES = {
     "sweep": 'kind = "sweep"\ncount = 2\n',

@@ -570,10 +570,10 @@ WRONG = {
               (r"case\.toml:{line}: curves 'ring_1' and 'ring_2' meet near "
                r"\(.*\) where half_spacing = 60",), "[curves.ring]",
               "check case.toml --set half_spacing=60"),
-        Wrong("joins", "webs that join a film of another name",
+        Wrong("swapped", "webs that join a film of another name",
               {'["blend_{i}", "floor_{i}"]\ntension': '["blend_{i}", "flor_{i}"]\ntension'},
               2, (r"case\.toml:{line}: .*'flor_1'.*floor_1",), "[films.web]"),
-        Wrong("amid", "webs that end amid the flanges",
+        Wrong("crossing", "webs that end amid the flanges",
               {'["(2 * i - 3) * end_x", "depth", "end_z"],\n  ["(2 * i - 3) * half_spacing", "ring_radius"':
                '["(2 * i - 3) * end_x", "depth - 20", "end_z"],\n  ["(2 * i - 3) * half_spacing", "ring_radius"'},
               2, (r"curves 'web_1' and 'inner_end_1' meet near",)),
