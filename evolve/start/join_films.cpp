@@ -8,10 +8,8 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "core/error.h"
-#include "evolve/films/edge_marks.h"
 #include "evolve/films/shared_sides.h"
 #include "evolve/groom/remesh.h"
 
@@ -376,7 +374,9 @@ void FilmJoiner::find_corners(int curve, const std::vector<int>& rim) {
       films::sides_of(system_.curves[static_cast<std::size_t>(curve)].shape);
   const double reach = kCornerReach * extent_of(complex_);
   std::vector<std::size_t>& corners = corners_[curve];
-  corners.clear();
+  if (!corners.empty()) {
+    return;  // another of its sides
+  }
   for (std::size_t i = 0; i < rim.size() && corners.size() < sides.size();
        ++i) {
     const Vec3& at = complex_.mesh.points[rim[i]];

@@ -136,11 +136,6 @@ objective = "mass"
 
 
 class Answers(ProgramTest):
-    def case(self, text, name="case.toml"):
-        path = self.folder / name
-        path.write_text(text)
-        return path
-
     def run_case(self, case, name, *more):
         out = self.folder / name
         return self.call("run", case, "--no-pictures", "--out", out,

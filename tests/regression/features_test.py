@@ -242,11 +242,6 @@ material = "steel"
 
 
 class Features(ProgramTest):
-    def case(self, text):
-        path = self.folder / "case.toml"
-        path.write_text(text)
-        return path
-
     def run_case(self, text):
         out = self.folder / "run"
         self.expect(self.call("run", self.case(text), "--out", out,

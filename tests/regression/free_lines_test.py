@@ -183,17 +183,6 @@ def tube(seed, **changed):
 
 
 class FreeLines(ProgramTest):
-    def case(self, text, name="case.toml"):
-        path = self.folder / name
-        path.write_text(text, encoding="utf-8")
-        return path
-
-    def run_at(self, text, name, **options):
-        out = self.folder / name
-        self.expect(self.call("run", self.case(text, name + ".toml"), "--out",
-                              out, "--no-pictures", "--no-report", **options), 0)
-        return self.result(out)
-
     def test_gradients_are_exact(self):
         for seed in range(4):
             self.expect(self.call("check-gradient", self.case(tube(seed))), 0,

@@ -156,12 +156,7 @@ def ribbed(seed, **changed):
 
 
 class JoinedFilms(ProgramTest):
-    def case(self, text, name="case.toml"):
-        path = self.folder / name
-        path.write_text(text, encoding="utf-8")
-        return path
-
-    def run_at(self, path, name, *options):
+    def run_files(self, path, name, *options):
         out = self.folder / name
         self.expect(self.call("run", path, "--out", out, "--no-pictures",
                               "--no-report", *options), 0)
@@ -190,7 +185,7 @@ class JoinedFilms(ProgramTest):
                 with open(out / "history.csv", encoding="utf-8") as rows:
                     moved = [row for row in csv.DictReader(rows)
                              if float(row["aside"]) == last]
-                anew = self.run_at(path, f"anew_{seed}", "--set", f"aside={last}")[1]
+                anew = self.run_files(path, f"anew_{seed}", "--set", f"aside={last}")[1]
                 self.assertAlmostEqual(
                     float(moved[0]["energy"]) / anew["responses"]["energy"], 1.0,
                     delta=2e-3)
@@ -198,7 +193,7 @@ class JoinedFilms(ProgramTest):
     def test_step_is_one_valid_solid(self):
         for seed in range(3):
             with self.subTest(seed=seed):
-                out, result = self.run_at(self.case(ribbed(seed)), f"step_{seed}")
+                out, result = self.run_files(self.case(ribbed(seed)), f"step_{seed}")
                 self.assertEqual(result["film"]["index"], 0)
                 done = self.call("export", out, "--format", "step")
                 self.expect(done, 0, "valid closed solid")
@@ -210,7 +205,7 @@ class JoinedFilms(ProgramTest):
         masses = []
         for share in (0.35, 0.5, 0.65):
             text = re.sub(r'"0\.\d+ \* high"', f'"{share} * high"', ribbed(2))
-            masses.append(self.run_at(self.case(text), f"from_{share}")[1]
+            masses.append(self.run_files(self.case(text), f"from_{share}")[1]
                           ["responses"]["mass"])
         for mass in masses:
             self.assertAlmostEqual(mass / masses[0], 1.0, delta=2e-3)

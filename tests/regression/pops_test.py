@@ -206,17 +206,6 @@ def cells(seed):
 
 
 class Pops(ProgramTest):
-    def case(self, text, name="case.toml"):
-        path = self.folder / name
-        path.write_text(text, encoding="utf-8")
-        return path
-
-    def run_at(self, text, name, **options):
-        out = self.folder / name
-        self.expect(self.call("run", self.case(text, name + ".toml"), "--out",
-                              out, "--no-pictures", "--no-report", **options), 0)
-        return self.result(out)
-
     def test_only_where_asked(self):
         as_drawn = self.case(plates(1, pop=""))
         self.expect(self.call("run", as_drawn, "--out", self.folder / "drawn"),

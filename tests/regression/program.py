@@ -143,6 +143,19 @@ class ProgramTest(unittest.TestCase):
             [str(PROGRAM), *map(str, arguments)], stdout=subprocess.PIPE,
             stderr=subprocess.PIPE, text=True, cwd=self.folder, **options)
 
+    def case(self, text, name="case.toml"):
+        """That text as a file."""
+        path = self.folder / name
+        path.write_text(text, encoding="utf-8")
+        return path
+
+    def run_at(self, text, name="out", **options):
+        """The result of a case of that text, in a folder of that name."""
+        out = self.folder / name
+        self.expect(self.call("run", self.case(text, name + ".toml"), "--out",
+                              out, "--no-pictures", "--no-report", **options), 0)
+        return self.result(out)
+
     def write_case(self, *replacements, name="case.toml"):
         """The two-arm case with text replaced; each pattern must be there."""
         text = CASE.read_text()

@@ -176,17 +176,6 @@ def ball(**changed):
 
 
 class SlidingWalls(ProgramTest):
-    def case(self, text, name="case.toml"):
-        path = self.folder / name
-        path.write_text(text, encoding="utf-8")
-        return path
-
-    def run_at(self, text, name="out"):
-        out = self.folder / name
-        self.expect(self.call("run", self.case(text, name + ".toml"), "--out",
-                              out, "--no-pictures", "--no-report"), 0)
-        return self.result(out)
-
     def evolve(self, text, name="film"):
         out = self.folder / name
         self.expect(self.call("evolve", self.case(text, name + ".toml"),

@@ -92,10 +92,8 @@ FORMATS = ["stl", "3mf", "obj", "step", "step-faceted", "fe", "inp", "bdf", "msh
 
 
 class Walls(ProgramTest):
-    def case(self, text=PIPE):
-        path = self.folder / "case.toml"
-        path.write_text(text, encoding="utf-8")
-        return path
+    def case(self, text=PIPE, name="case.toml"):
+        return super().case(text, name)
 
     def test_are_run_and_exported(self):
         out = self.folder / "out"
