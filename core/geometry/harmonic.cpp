@@ -76,10 +76,13 @@ Eigen::MatrixXd harmonic(const HarmonicProblem& problem) {
   };
   // Offsets make a function that jumps across a cut.
   for (std::size_t i = 0; i < problem.facets.size(); ++i) {
-    const Triangle& t = problem.mesh[problem.facets[i]];
+    const int f = problem.facets[i];
+    const Triangle& t = problem.mesh[f];
+    const double stiffness =
+        problem.stiffness.empty() ? 1.0 : problem.stiffness[f];
     for (int k = 0; k < 3; ++k) {
       const int next = (k + 1) % 3;
-      const double weight = edge_weight(problem, t, k);
+      const double weight = stiffness * edge_weight(problem, t, k);
       const double jump =
           problem.offsets.empty()
               ? 0.0

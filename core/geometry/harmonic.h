@@ -27,6 +27,9 @@ struct HarmonicProblem {
   // empty: nothing. For functions that gain 1 around a tube.
   std::vector<std::array<int, 3>> offsets = {};
   HarmonicWeights weights = HarmonicWeights::Positive;
+  // Of each facet of the mesh, above 0: where it is large the functions are
+  // flatter; empty: 1.
+  std::vector<double> stiffness = {};
 };
 
 /// The values at all points of the facets; others keep theirs. Each connected

@@ -285,7 +285,8 @@ class Fillets {
   };
 
   // Where lines end, at others or on a rim, the wall point moves along them
-  // too: so do the points behind it, to keep their order.
+  // too, ahead or out of a corner: so do the points behind it, to keep their
+  // order and to leave no long edge.
   void slide_along_lines() {
     for (const Strand& strand : strands()) {
       const std::size_t last = strand.points.size() - 1;
@@ -299,10 +300,10 @@ class Fillets {
         }
         return all;
       };
-      const double s0 = std::max(sum(first_end), 0.0);
-      const double s1 = std::max(sum(last_end), 0.0);
+      const double s0 = sum(first_end);
+      const double s1 = sum(last_end);
       const double length = strand.way.back();
-      const bool is_short = kReach * (s0 + s1) > length;
+      const bool is_short = kReach * (std::abs(s0) + std::abs(s1)) > length;
       std::vector<std::vector<WallMove>> offsets;  // before they slide
       for (const int p : strand.points) {
         offsets.push_back(moves_of(p));
@@ -310,8 +311,8 @@ class Fillets {
       for (std::size_t k = 1; k < last; ++k) {
         const double way = strand.way[k];
         const auto fade = [&](double slide, double from) {
-          const double reach = is_short ? length : kReach * slide;
-          return slide > 0.0 ? std::max(1.0 - from / reach, 0.0) : 0.0;
+          const double reach = is_short ? length : kReach * std::abs(slide);
+          return slide != 0.0 ? std::max(1.0 - from / reach, 0.0) : 0.0;
         };
         const double f0 = fade(s0, way);
         const double f1 = fade(s1, length - way);
@@ -349,12 +350,14 @@ class Fillets {
     while (i + 2 <= last && strand.way[i + 1] < way) {
       ++i;
     }
-    const double part = std::clamp(
-        (way - strand.way[i]) / (strand.way[i + 1] - strand.way[i]), 0.0, 1.0);
+    // Straight on beyond an end.
+    const double place =
+        (way - strand.way[i]) / (strand.way[i + 1] - strand.way[i]);
+    const double part = std::clamp(place, 0.0, 1.0);
     const int point = strand.points[k];
     const Vec3 from = film_of(point);
-    const Vec3 by = (1.0 - part) * film_of(strand.points[i]) +
-                    part * film_of(strand.points[i + 1]) - from;
+    const Vec3 by = (1.0 - place) * film_of(strand.points[i]) +
+                    place * film_of(strand.points[i + 1]) - from;
     const double slid = way - strand.way[k];
     std::set<int> walls;
     for (const auto* ends : {&offsets.front(), &offsets.back(), &offsets[k]}) {

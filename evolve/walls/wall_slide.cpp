@@ -1,6 +1,7 @@
 #include "evolve/walls/wall_slide.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <queue>
 #include <utility>
@@ -10,6 +11,9 @@
 namespace meniscus::walls {
 
 namespace {
+
+constexpr double kStraightOn = 0.87;  // cosine, 30 degrees
+constexpr double kStiffer = 1.3;      // p: far corners would stretch at 2
 
 /// Length of the shortest way along edges from a held point, up to `reach`;
 /// `reach` beyond.
@@ -66,6 +70,48 @@ Points rim_directions(const SlideInput& input) {
   return along;
 }
 
+/// Points where the junctions about the sheet turn a corner.
+Points held_corners(const SlideInput& input) {
+  const Sheet& sheet = input.sheet;
+  const Points& x = sheet.film.points;
+  std::map<int, Points> ways;  // from held points along junctions
+  for (std::size_t e = 0; e < sheet.edges.size(); ++e) {
+    const auto [a, b] = sheet.edges[e];
+    if (sheet.edge_facets[e][1] < 0 && input.held[a] != 0 &&
+        input.held[b] != 0) {
+      const Vec3 way = (x[b] - x[a]).normalized();
+      ways[a].push_back(way);
+      ways[b].push_back(-way);
+    }
+  }
+  Points corners;
+  for (const auto& [v, both] : ways) {
+    if (both.size() == 2 && both[0].dot(both[1]) > -kStraightOn) {
+      corners.push_back(x[v]);
+    }
+  }
+  return corners;
+}
+
+/// Of each facet: what is harmonic has infinite slope at a corner that the
+/// sheet is outside of, r^(2/3) at a right angle, and facets next to it would
+/// turn over; with a stiffness of r^-p it goes as r^q, q (q - p) = (2/3)^2, and
+/// is flat there.
+std::vector<double> stiff_at_corners(const SlideInput& input) {
+  const Points corners = held_corners(input);
+  const Points& x = input.sheet.film.points;
+  std::vector<double> stiffness;
+  for (const Triangle& t : input.sheet.film.facets) {
+    const Vec3 middle = (x[t[0]] + x[t[1]] + x[t[2]]) / 3.0;
+    double nearest = input.reach;
+    for (const Vec3& corner : corners) {
+      nearest = std::min(nearest, (middle - corner).norm());
+    }
+    stiffness.push_back(std::pow(input.reach / nearest, kStiffer));
+  }
+  return stiffness;
+}
+
 /// Harmonic where `fixed` is 0, three columns a wall.
 void make_harmonic(HarmonicProblem& problem) {
   problem.facets.clear();
@@ -93,7 +139,8 @@ Slides slide(const SlideInput& input) {
                           .facets = {},
                           .fixed = std::vector<char>(count, 1),
                           .values = Eigen::MatrixXd::Zero(
-                              static_cast<Eigen::Index>(count), columns)};
+                              static_cast<Eigen::Index>(count), columns),
+                          .stiffness = stiff_at_corners(input)};
   Eigen::Index column = 0;
   for (const auto& [wall, slides] : input.slides) {
     for (std::size_t v = 0; v < count; ++v) {

@@ -422,6 +422,76 @@ TEST(Fillets, AreArcs) {
   }
 }
 
+/// A plate in z = 0 with a square hole, from whose edges a column of four films
+/// leans outwards on its way down. `n` edges per half width of the hole.
+SurfaceMesh brim_on_column(double lean, int n) {
+  SurfaceMesh brim;
+  brim.labels = {"brim"};
+  std::map<std::pair<int, int>, int> id;
+  const auto point = [&](int i, int j) {
+    const auto [at, fresh] =
+        id.try_emplace({i, j}, static_cast<int>(brim.points.size()));
+    if (fresh) {
+      brim.points.push_back(Vec3(i, j, 0) / n);
+    }
+    return at->second;
+  };
+  for (int i = -2 * n; i < 2 * n; ++i) {
+    for (int j = -2 * n; j < 2 * n; ++j) {
+      if (i < -n || i >= n || j < -n || j >= n) {
+        const int a = point(i, j);
+        const int b = point(i + 1, j);
+        const int c = point(i + 1, j + 1);
+        const int d = point(i, j + 1);
+        brim.facets.push_back({a, b, c});
+        brim.facets.push_back({a, c, d});
+      }
+    }
+  }
+  brim.facet_label.assign(brim.facets.size(), 0);
+  std::vector<SurfaceMesh> films = {brim};
+  for (int k = 0; k < 4; ++k) {
+    const Mat3 turn =
+        Eigen::AngleAxisd(0.5 * kHalfTurn * k, Vec3::UnitZ()).matrix();
+    films.push_back(shapes::patch(
+        [&](double u, double v) -> Vec3 {
+          const double wide = 1.0 + lean * v;
+          return turn * Vec3(wide, (2.0 * u - 1.0) * wide, -2.0 * v);
+        },
+        {.rows = 2 * n, .columns = 2 * n, .jitter = 0.0},
+        "side" + std::to_string(k)));
+  }
+  return joined_films(films);
+}
+
+// Under the brim, outside of the column, all moves away from the column's
+// corner; what lagged behind there would hang over.
+TEST(WallModel, KeepsFacetsInOrderAroundAColumn) {
+  for (const double lean : {0.0, 0.3}) {
+    for (const int n : {4, 8, 12, 16}) {
+      const Made made =
+          make(brim_on_column(lean, n), 0.3, 0, lean == 0.0 ? 0.15 : 0.1);
+      const walls::ThickWall& wall = made.model.walls().at(0);
+      EXPECT_TRUE(wall.findings.empty()) << summary(wall.findings);
+      const SurfaceMesh& mesh = wall.surface;
+      double least = 1.0;  // of a facet's normal, downwards
+      for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+        const std::string& label = mesh.labels[mesh.facet_label[f]];
+        const Vec3 area = area_vector2(mesh, static_cast<int>(f));
+        const Triangle& t = mesh.facets[f];
+        const double z =
+            (mesh.points[t[0]] + mesh.points[t[1]] + mesh.points[t[2]]).z() /
+            3.0;
+        if (label.substr(0, 4) == "brim" && label.find("rim:") == label.npos &&
+            z < 0.0) {
+          least = std::min(least, -area.normalized().z());
+        }
+      }
+      EXPECT_GT(least, 0.0) << "lean " << lean << ", " << n << " edges";
+    }
+  }
+}
+
 TEST(WallModel, TurnsWithItsFilm) {
   const Made made = make(fan({0, 90, 200}), 0.1);
   const Mat3 turn =
