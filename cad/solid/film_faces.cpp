@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/Geometry>
 
@@ -15,7 +16,15 @@ constexpr int kNormalRounds = 3;
 constexpr double kSamePlane = 0.9;  // cosine
 constexpr int kHalvings = 3;
 constexpr int kMostHalvings = 5;  // the last where faces are far off alone
-constexpr double kFarOff = 5.0;   // x the limit
+constexpr double kFarOff = 2.0;   // x the limit
+
+double most_folded(const std::vector<FittedPatch>& patches) {
+  double most = 0.0;
+  for (const FittedPatch& patch : patches) {
+    most = std::max(most, folded_share(patch));
+  }
+  return most;
+}
 
 class FaceBuilder {
  public:
@@ -37,6 +46,7 @@ class FaceBuilder {
   void fit_lines();
   void add_line_edges();
   std::vector<FittedPatch> fit_patches() const;
+  std::vector<FittedPatch> fit();
   PatchSides sides_of(const FilmPatch& patch) const;
   void measure_gaps(const FilmPatch& patch, const PatchSides& sides);
   std::vector<BrepUse> outline(const FilmPatch& patch) const;
@@ -295,21 +305,49 @@ std::vector<FittedPatch> FaceBuilder::fit_patches() const {
   return patches;
 }
 
-FilmFaces FaceBuilder::build() {
-  FilmFaces faces;
+/// With knots halved where patches leave the film or rims. Of the rounds that
+/// fold least the last counts; where later ones fold more, only what leaves
+/// rims is halved after it.
+std::vector<FittedPatch> FaceBuilder::fit() {
+  FilmKnots::Classes best;
+  double least = std::numeric_limits<double>::infinity();
   for (int round = 0; round <= kMostHalvings; ++round) {
     fit_lines();
-    faces.patches = fit_patches();
-    if (round == kMostHalvings ||
-        !knots_.halve(faces.patches, brep_,
-                      round < kHalvings ? 1.0 : kFarOff)) {
+    std::vector<FittedPatch> patches = fit_patches();
+    const double folded = most_folded(patches);
+    if (folded <= least) {
+      least = folded;
+      best = knots_.classes();
+    }
+    const bool done =
+        round == kMostHalvings ||
+        !knots_.halve(patches, brep_, round < kHalvings ? 1.0 : kFarOff);
+    if (done && folded <= least) {
+      return patches;
+    }
+    if (done) {
       break;
     }
   }
+  knots_.restore(best);
+  for (int round = 0;; ++round) {
+    fit_lines();
+    std::vector<FittedPatch> patches = fit_patches();
+    if (round == kMostHalvings ||
+        !knots_.halve(patches, brep_,
+                      std::numeric_limits<double>::infinity())) {
+      return patches;
+    }
+  }
+}
+
+FilmFaces FaceBuilder::build() {
+  FilmFaces faces;
+  faces.patches = fit();
   for (int round = 0; round < kNormalRounds; ++round) {
     average_normals(faces.patches);
     std::vector<FittedPatch> patches = fit_patches();
-    if (std::any_of(patches.begin(), patches.end(), is_folded)) {
+    if (most_folded(patches) > most_folded(faces.patches)) {
       break;  // those of the round before stand
     }
     faces.patches = std::move(patches);

@@ -37,7 +37,7 @@ RimSide FilmOnRims::side(const FilmPatch& patch, int side) const {
 FilmKnots::FilmKnots(const FilmOnRims& film, const FaceLimits& limits)
     : film_(film),
       limits_(limits),
-      classes_(static_cast<int>(film.cut.patches.size())) {
+      directions_(static_cast<int>(film.cut.patches.size())) {
   set_classes();
   set_knots();
   spread_knots();
@@ -55,7 +55,7 @@ void FilmKnots::set_classes() {
         user[line] = {static_cast<int>(p), side};
       } else if (line >= 0) {
         const auto [q, other] = user[line];
-        classes_.join(
+        directions_.join(
             static_cast<int>(p), side, q, other,
             cut.patches[p].reversed[side] != cut.patches[q].reversed[other]);
       }
@@ -70,7 +70,7 @@ void FilmKnots::set_knots() {
   for (std::size_t p = 0; p < film_.cut.patches.size(); ++p) {
     const FilmPatch& patch = film_.cut.patches[p];
     for (int side = 0; side < 4; ++side) {
-      const auto [root, flipped] = classes_.of(static_cast<int>(p), side);
+      const auto [root, flipped] = directions_.of(static_cast<int>(p), side);
       demands[root].push_back(
           patch.rims[side] >= 0
               ? demand(film_.side(patch, side), flipped)
@@ -91,7 +91,7 @@ void FilmKnots::spread_knots() {
   for (std::size_t p = 0; p < cut.patches.size(); ++p) {
     const FilmPatch& patch = cut.patches[p];
     for (int side = 0; side < 4; ++side) {
-      const auto [root, flipped] = classes_.of(static_cast<int>(p), side);
+      const auto [root, flipped] = directions_.of(static_cast<int>(p), side);
       patch_knots_[p][side % 2] = turned_knots(knots_.at(root), flipped);
       if (patch.lines[side] >= 0) {
         line_knots_[patch.lines[side]] =
@@ -101,8 +101,13 @@ void FilmKnots::spread_knots() {
   }
 }
 
+void FilmKnots::restore(const Classes& knots) {
+  knots_ = knots;
+  spread_knots();
+}
+
 void FilmKnots::mark(int patch, int side, std::size_t span) {
-  const auto [root, flipped] = classes_.of(patch, side);
+  const auto [root, flipped] = directions_.of(patch, side);
   LongSpans& spans = long_[root];
   spans[flipped ? spans.size() - 1 - span : span] = 1;
 }
@@ -171,7 +176,7 @@ bool FilmKnots::halve(const std::vector<FittedPatch>& patches, const Brep& brep,
   }
   for (std::size_t p = 0; p < patches.size(); ++p) {
     // What three rounds have not unfolded finer knots fold the more.
-    if (times == 1.0 || !is_folded(patches[p])) {
+    if (times == 1.0 || folded_share(patches[p]) == 0.0) {
       mark_misses(static_cast<int>(p), patches[p], times);
     }
     for (int side = 0; side < 4; ++side) {

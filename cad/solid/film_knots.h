@@ -45,8 +45,13 @@ class FilmKnots {
   const std::vector<double>& of_line(std::size_t line) const {
     return line_knots_[line];
   }
+  /// Those of each class of directions.
+  using Classes = std::map<int, std::vector<double>>;
+  const Classes& classes() const { return knots_; }
+  void restore(const Classes& knots);
   /// Halves the spans in which patches leave the film by more than `times` the
-  /// limit, or a rim by more than its own. False where there are none.
+  /// limit (infinite: nowhere), or a rim by more than its own. False where
+  /// there are none.
   bool halve(const std::vector<FittedPatch>& patches, const Brep& brep,
              double times);
 
@@ -60,9 +65,9 @@ class FilmKnots {
 
   FilmOnRims film_;
   FaceLimits limits_;
-  DirectionClasses classes_;
-  std::map<int, std::vector<double>> knots_;  // per class
-  std::map<int, LongSpans> long_;             // the same
+  DirectionClasses directions_;
+  Classes knots_;
+  std::map<int, LongSpans> long_;  // per class
   std::vector<std::array<std::vector<double>, 2>> patch_knots_;
   std::vector<std::vector<double>> line_knots_;
 };

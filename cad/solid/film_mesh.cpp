@@ -14,6 +14,8 @@ namespace meniscus::solid {
 
 namespace {
 
+constexpr double kRounding = 1e-12;  // of cosines
+
 std::vector<std::vector<int>> neighbours(const FilmMesh& mesh) {
   std::vector<std::vector<int>> rings(mesh.points.size());
   for (const Triangle& t : mesh.facets) {
@@ -72,26 +74,145 @@ Vec3 fitted_normal(const FilmMesh& mesh, const Vec3& p, const Vec3& normal,
   return (normal - c[0] * x - c[1] * y).normalized();
 }
 
+constexpr double kFold = 0.5;      // cosine between the facets of an edge
+constexpr double kFlatter = 1e-6;  // what a flip has to gain
+
+/// Facets by their directed edges.
+std::map<Edge, int> facets_by_edge(const std::vector<Triangle>& facets) {
+  std::map<Edge, int> owner;
+  for (std::size_t f = 0; f < facets.size(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      owner[{facets[f][k], facets[f][(k + 1) % 3]}] = static_cast<int>(f);
+    }
+  }
+  return owner;
+}
+
+int corner_opposite(const Triangle& t, int a, int b) {
+  return t[0] + t[1] + t[2] - a - b;
+}
+
+class FoldFlipper {
+ public:
+  explicit FoldFlipper(FilmMesh& mesh)
+      : mesh_(mesh), owner_(facets_by_edge(mesh.facets)) {}
+
+  /// Flips the edge if that makes its quadrangle flatter.
+  bool flip(const Edge& edge) {
+    const auto [a, b] = edge;
+    const auto here = owner_.find(edge);
+    const auto there = owner_.find({b, a});
+    if (here == owner_.end() || there == owner_.end()) {
+      return false;  // of a boundary, or flipped away
+    }
+    const int left = here->second;
+    const int right = there->second;
+    const Vec3 left_normal = normal_of(mesh_.facets[left]);
+    const Vec3 right_normal = normal_of(mesh_.facets[right]);
+    const double across = left_normal.dot(right_normal);
+    if (across >= kFold) {
+      return false;
+    }
+    const int c = corner_opposite(mesh_.facets[left], a, b);
+    const int d = corner_opposite(mesh_.facets[right], a, b);
+    if (owner_.count({c, d}) > 0 || owner_.count({d, c}) > 0) {
+      return false;
+    }
+    const Triangle first{a, d, c};
+    const Triangle second{d, b, c};
+    const Vec3 first_normal = normal_of(first);
+    const Vec3 second_normal = normal_of(second);
+    const double before = std::min(
+        {across, cosine(left_normal, {c, b}), cosine(left_normal, {a, c}),
+         cosine(right_normal, {d, a}), cosine(right_normal, {b, d})});
+    const double after =
+        std::min({first_normal.dot(second_normal),
+                  cosine(second_normal, {c, b}), cosine(first_normal, {a, c}),
+                  cosine(first_normal, {d, a}), cosine(second_normal, {b, d})});
+    if (after <= before + kFlatter) {
+      return false;
+    }
+    mesh_.facets[left] = first;
+    mesh_.facets[right] = second;
+    owner_.erase(here);
+    owner_.erase(there);
+    for (const int f : {left, right}) {
+      const Triangle& t = mesh_.facets[f];
+      for (int k = 0; k < 3; ++k) {
+        owner_[{t[k], t[(k + 1) % 3]}] = f;
+      }
+    }
+    return true;
+  }
+
+ private:
+  Vec3 normal_of(const Triangle& t) const {
+    return (mesh_.points[t[1]] - mesh_.points[t[0]])
+        .cross(mesh_.points[t[2]] - mesh_.points[t[0]])
+        .normalized();
+  }
+  /// With the facet that has the directed edge; 1 on a boundary.
+  double cosine(const Vec3& normal, const Edge& edge) const {
+    const auto found = owner_.find(edge);
+    return found == owner_.end()
+               ? 1.0
+               : normal.dot(normal_of(mesh_.facets[found->second]));
+  }
+
+  FilmMesh& mesh_;
+  std::map<Edge, int> owner_;
+};
+
 }  // namespace
+
+void flip_folds(FilmMesh& mesh) {
+  FoldFlipper flipper(mesh);
+  bool any = true;
+  for (std::size_t round = 0; any && round < mesh.facets.size(); ++round) {
+    any = false;
+    std::vector<Edge> edges;
+    std::vector<Triangle> facet_edges;
+    list_edges(mesh.facets, edges, facet_edges);
+    for (const Edge& edge : edges) {
+      any = flipper.flip(edge) || any;
+    }
+  }
+}
 
 void set_normals(FilmMesh& mesh) {
   Points flat_normals(mesh.points.size(), Vec3::Zero());
+  std::vector<Points> around(mesh.points.size());  // of facets
   for (const Triangle& t : mesh.facets) {
     const Vec3 area = (mesh.points[t[1]] - mesh.points[t[0]])
                           .cross(mesh.points[t[2]] - mesh.points[t[0]]);
     for (const int v : t) {
       flat_normals[v] += area;
+      around[v].push_back(area.normalized());
     }
   }
   const std::vector<std::vector<int>> rings = neighbours(mesh);
+  // Facets of a smooth film turn farther, within a vertex's ring, than its
+  // normal is from their mean: a fit beyond them extrapolates a crease.
+  const auto least_cosine = [&](int v, const Vec3& flat_normal) {
+    double least = 1.0;
+    for (const int w : rings[v]) {
+      for (const Vec3& normal : around[w]) {
+        least = std::min(least, normal.dot(flat_normal));
+      }
+    }
+    return least - kRounding;
+  };
   mesh.normals.resize(mesh.points.size());
   for (std::size_t v = 0; v < mesh.points.size(); ++v) {
-    Vec3 normal = flat_normals[v].normalized();
+    const Vec3 flat_normal = flat_normals[v].normalized();
     const std::vector<int> near = two_rings(rings, static_cast<int>(v));
+    Vec3 normal = flat_normal;
     for (int round = 0; round < 2; ++round) {
       normal = fitted_normal(mesh, mesh.points[v], normal, near);
     }
-    mesh.normals[v] = normal;
+    const bool within = normal.dot(flat_normal) >=
+                        least_cosine(static_cast<int>(v), flat_normal);
+    mesh.normals[v] = within ? normal : flat_normal;
   }
 }
 

@@ -18,6 +18,11 @@ struct FilmMesh {
   std::map<Edge, Vec3> bulges;
 };
 
+/// Flips edges whose facets lie back to back (by more than 60 degrees) where
+/// the film gets flatter: beside a corner of its rim facets can hang over the
+/// rim.
+void flip_folds(FilmMesh& mesh);
+
 /// Normals by a least-squares quadric through each vertex and its two rings of
 /// neighbours: second order, at rims too.
 void set_normals(FilmMesh& mesh);

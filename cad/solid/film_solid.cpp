@@ -96,6 +96,7 @@ void SolidBuilder::add_film(const std::string& name,
     }
     mesh.facets.push_back(t);
   }
+  flip_folds(mesh);
   set_normals(mesh);
   FilmPiece film;
   film.name = name;

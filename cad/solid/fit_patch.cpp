@@ -247,10 +247,13 @@ void add_normals(PoleSystem& system, const PatchSides& sides, int side,
 
 }  // namespace
 
-bool is_folded(const FittedPatch& patch) {
-  return std::any_of(
-      patch.misses.begin(), patch.misses.end(),
-      [](const PatchMiss& miss) { return std::isinf(miss.off); });
+double folded_share(const FittedPatch& patch) {
+  const auto folded =
+      std::count_if(patch.misses.begin(), patch.misses.end(),
+                    [](const PatchMiss& miss) { return std::isinf(miss.off); });
+  return folded == 0 ? 0.0
+                     : static_cast<double>(folded) /
+                           static_cast<double>(patch.misses.size());
 }
 
 FittedPatch fit_patch(const FilmMesh& mesh, const FilmPatch& patch,

@@ -36,8 +36,8 @@ struct FittedPatch {
   std::vector<PatchMiss> misses;
 };
 
-/// True where the surface is seen from behind at a point of the film.
-bool is_folded(const FittedPatch& patch);
+/// The share of the film's points at which the surface is seen from behind.
+double folded_share(const FittedPatch& patch);
 
 /// Parameters are harmonic on the patch with the sides' as given; poles are
 /// the least-squares ones over points of the smooth film, the sides' exactly

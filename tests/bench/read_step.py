@@ -14,9 +14,9 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 READER = ROOT / "tests/peers/freecad_step.py"
-CASES = ["two_arm", "two_arm_sized", "strut_family"]
-WALLS = ["torque_tube", "bracket_vs_solid", "h_beam_casting"]
-FILES = {"bracket_vs_solid": "skin.toml"}
+CASES = ["two_arm/case", "two_arm_sized/case", "strut_family/case"]
+WALLS = ["torque_tube/case", "bracket_vs_solid/skin", "bracket_vs_solid/case",
+         "h_beam_casting/case", "minimal_cell/case", "minimal_cell/diamond"]
 SETTINGS = ["--no-pictures", "--quiet"]
 ANALYSE = ["--set", "study.kind=analyse"]
 FACETS = 1e-2  # relative volume of a wall's facets, off its faces'
@@ -59,11 +59,11 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         for case in CASES + WALLS:
-            run = folder / case
-            path = ROOT / "cases" / case / FILES.get(case, "case.toml")
+            run = folder / case.replace("/", "_")
+            path = ROOT / "cases" / f"{case}.toml"
             analyse = ANALYSE if "[study]" in path.read_text() else []
             call(program, "run", path, *SETTINGS, *analyse, "--out", run)
-            step, stl = folder / f"{case}.step", folder / f"{case}.stl"
+            step, stl = run.with_suffix(".step"), run.with_suffix(".stl")
             told = call(program, "export", run, "--format", "step", "--out",
                         step)
             call(program, "export", run, "--format", "stl", "--out", stl)
