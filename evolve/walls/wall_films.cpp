@@ -9,6 +9,7 @@
 
 #include "core/geometry/edge_key.h"
 #include "evolve/films/shared_sides.h"
+#include "evolve/walls/flush_ends.h"
 #include "evolve/walls/rim_shape.h"
 #include "evolve/walls/wall_reference.h"
 
@@ -234,6 +235,7 @@ WallFilms wall_films(const frozen::FilmModel& model,
   }
   films.names = rim_names(model, system, points);
   films.planes = planes_of(model, system);
+  add_flush_planes(system.curves, walls, films);
   films.asked =
       usual_thicknesses(films, on_films(walls, mesh, films.wall, films.rims));
   return films;

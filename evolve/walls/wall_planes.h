@@ -1,4 +1,5 @@
-/// Ends of walls in the planes on which their films slide.
+/// Ends of walls in planes: those on which their films slide, and those of
+/// curves at which they are flush.
 ///
 /// A point of a wall over a film vertex of such a plane stays in it, and as far
 /// from the film's tangent plane as the wall's offset says: of an offset w off

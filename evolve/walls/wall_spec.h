@@ -20,6 +20,9 @@ struct WallSpec {
   WallSide side = WallSide::Both;
   /// Radius at junctions [length]; half the thickness when left out.
   std::optional<double> fillet;
+  /// Planar curves in whose plane the wall ends; at others it ends square to
+  /// its films.
+  std::vector<std::string> flush = {};
   /// The body that the wall is part of; walls that meet are of one.
   int region = 0;
 };

@@ -33,7 +33,7 @@ struct WallFilms {
   int levels = 0;             // how many of them
   std::vector<WallRim> rims;  // curves, with their own points
   std::vector<RimName> names;
-  WallPlanes planes;  // on which the films slide
+  WallPlanes planes;  // on which the films slide, or walls end
 };
 
 /// A point of a wall.

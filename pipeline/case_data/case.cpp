@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "evolve/energy/fields.h"
+#include "evolve/walls/flush_ends.h"
 #include "evolve/walls/rim_shape.h"
 #include "pipeline/case_data/case_curves.h"
 #include "pipeline/case_data/case_loads.h"
@@ -410,6 +411,24 @@ bool check_rim_shapes(const Case& input, const walls::WallSpec& wall,
   return found;
 }
 
+/// Tells of curves of no plane at which a wall should be flush.
+void check_flush(const Case& input, const WallEntry& wall,
+                 const films::FilmSystem& system, const CaseValues& values) {
+  for (const curves::Curve& curve : system.curves) {
+    if (std::find(wall.flush.begin(), wall.flush.end(), curve.name) ==
+        wall.flush.end()) {
+      continue;
+    }
+    try {
+      walls::flush_normal(curve);
+    } catch (const InvalidInput& error) {
+      values.problems().push_back(fmt::format("{}: walls.{}: {}",
+                                              place(input, wall.line),
+                                              wall.name, error.what()));
+    }
+  }
+}
+
 /// Tells of expressions of place that cannot hold on their films.
 void check_places(const Case& input, const EvaluatedCase& inputs,
                   const CaseValues& values) {
@@ -425,6 +444,7 @@ void check_places(const Case& input, const EvaluatedCase& inputs,
     const PlaceQuantity& from = input.walls[k].thickness;
     const std::vector<std::string> curves = curves_under(input, wall.films);
     const std::size_t before = values.problems().size();
+    check_flush(input, input.walls[k], inputs.film_system, values);
     if (!check_rim_shapes(input, wall, from, values)) {
       check_on_curves(input, inputs.film_system, curves, from, wall.thickness,
                       values);
@@ -450,6 +470,7 @@ Inputs inputs_of(const Case& input, const CaseValues& values) {
                          .thickness = values.place_field(wall.thickness),
                          .side = wall.side,
                          .fillet = wall.fillet,
+                         .flush = wall.flush,
                          .region = wall.region};
     result.walls.push_back(std::move(spec));
   }

@@ -237,8 +237,9 @@ struct WallEntry {
   PlaceQuantity thickness;
   walls::WallSide side = walls::WallSide::Both;
   std::optional<double> fillet;  // [length]
-  int material = kVoid;          // index into materials; kVoid: none given
-  int region = 0;                // walls whose films share a curve are of one
+  std::vector<std::string> flush;
+  int material = kVoid;  // index into materials; kVoid: none given
+  int region = 0;        // walls whose films share a curve are of one
   SourceLine line = 0;
 };
 

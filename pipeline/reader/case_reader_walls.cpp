@@ -110,6 +110,22 @@ int material_of(CaseContext& context, const CaseTable& table,
   return case_data::kVoid;
 }
 
+std::vector<std::string> flush_curves(CaseContext& context,
+                                      const CaseTable& table,
+                                      const case_data::Case& result) {
+  std::vector<std::string> known;
+  for (const case_data::CurveEntry& curve : result.curves) {
+    known.push_back(curve.name);
+  }
+  const std::vector<std::string> wanted = table.names("flush");
+  for (const std::string& curve : wanted) {
+    if (std::find(known.begin(), known.end(), curve) == known.end()) {
+      context.problems.unknown(table.line("flush"), "curve", curve, known);
+    }
+  }
+  return wanted;
+}
+
 }  // namespace
 
 TableSpec wall_table() {
@@ -131,6 +147,9 @@ TableSpec wall_table() {
        {"fillet", K::Constant, D::Length, false,
         "radius where three or more films meet, 0: sharp; half the thickness "
         "when left out"},
+       {"flush", K::Names, D::None, false,
+        "planar curves in whose plane the wall ends, as feet on a floor; at "
+        "others it ends square to its films"},
        {"side", K::Choice, D::None, false,
         "where the material lies: both sides of the film, all of it inside "
         "(towards the middle of the film's curves) or outside; both when left "
@@ -156,6 +175,7 @@ void read_walls(CaseContext& context, const toml::table& root,
                                        "below 0",
                                        table.path(), *wall.fillet));
     }
+    wall.flush = flush_curves(context, table, result);
     wall.material = material_of(context, table, result);
     result.walls.push_back(std::move(wall));
   }

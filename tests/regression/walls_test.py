@@ -212,6 +212,30 @@ curves = ["far"]
         self.expect(self.call("run", case, "--out", self.folder / "out"), 3,
                     r"walls\.pipe cannot be meshed: (.|\n)*at most near \(")
 
+    # Cones between circles end in planes where they are flush, and what follows
+    # the design follows them there.
+    def test_flush_ends_are_planes(self):
+        flush = PIPE.replace('thickness = "wall"\n',
+                             'thickness = "wall"\nflush = ["base"]\n')
+        out = self.folder / "flush"
+        self.expect(self.call("run", self.case(flush), "--out", out), 0)
+        done = self.expect(self.call("export", out, "--format", "step"), 0,
+                           r"low/rim:base is a plane; the film leaves it by")
+        self.assertNotIn("high/rim:head is a plane", done.stdout + done.stderr)
+        self.expect(self.call("check-gradient", self.case(flush)), 0)
+        self.expect(self.call("check", self.case(
+            flush.replace('["base"]', '["bass"]'))), 2,
+            r"case\.toml:45: there is no curve 'bass'; did you mean 'base'")
+        # A plate in the plane of its own rim has no such end.
+        flat = flush.replace("fillet = 2\n", 'fillet = 2\nflush = ["waist"]\n')
+        self.expect(self.call("run", self.case(flat)), 2,
+                    r"flush at curve 'waist', and film 'plate' meets")
+        bent = (flush.replace('["base"]', '["bent"]') +
+                "\n[curves.bent]\nkind = \"polygon\"\n"
+                "points = [[0, 0, 0], [9, 0, 0], [9, 9, 3], [0, 9, 0]]\n")
+        self.expect(self.call("check", self.case(bent)), 2,
+                    r"walls\.pipe: .*'bent', which lies in no plane")
+
     def test_what_cannot_be_analysed_is_refused(self):
         case = self.case(PIPE.replace('thickness = 4\nfillet = 2\n'
                                       'material = "steel"\n',
