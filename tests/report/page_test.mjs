@@ -118,6 +118,11 @@ constraints = [{ response = "sway", max = 1e-6 }]
 `,
 );
 
+// Heights beyond which its neck closes.
+const TEARING = STRUTS.replace("[parameters]\nheight = 60", '[design.height]\ninitial = 60\nbounds = [60, 130]')
+  .replace('"1500 * height"', '"1200 * height"')
+  .replace(/\[study\][^]*/, '[study]\nkind = "sweep"\ncount = 4\n');
+
 // Twelve points of a foot, design variables under one name.
 const PETALS = STRUTS.replace(
   /kind = "circle"\ncenter = \[0, 0, 0\][^]*?radius = 25/,
@@ -153,6 +158,8 @@ function makeRuns() {
     fs.writeFileSync(path.join(output, `${name}.toml`), text);
     run(3, "run", `${name}.toml`, "--no-pictures", "--out", name);
   }
+  fs.writeFileSync(path.join(output, "tearing.toml"), TEARING);
+  run(0, "run", "tearing.toml", "--no-pictures", "--out", "tearing");
   fs.writeFileSync(path.join(output, "struts.toml"), STRUTS);
   run(0, "run", "struts.toml", "--no-pictures", "--out", "struts");
   fs.writeFileSync(path.join(output, "petals.toml"), PETALS);
@@ -496,6 +503,17 @@ async function testVectors(browser) {
   }
 }
 
+/** Where a film came to an end on the way. */
+async function testEvents(browser) {
+  const { topology } = JSON.parse(fs.readFileSync(path.join(output, "tearing", "result.json"), "utf-8"));
+  assert.equal(topology[0].kind, "film_pinched");
+  const visit = await Visit.to(browser, "tearing");
+  await visit.shot("tearing");
+  const events = await visit.page.evaluate(() => document.querySelector("#checks .events").innerText);
+  assert.match(events, /a neck closes at \d+ designs?, nearest to the start at evaluation \d+: \S/);
+  await visit.leave();
+}
+
 async function testMany(browser) {
   const many = await Visit.to(browser, "many");
   const cells = await many.page.evaluate(() => {
@@ -557,6 +575,7 @@ try {
   await testRun(browser);
   await testOthers(browser);
   await testVectors(browser);
+  await testEvents(browser);
   await testMany(browser);
 } finally {
   await browser.close();

@@ -235,6 +235,8 @@ export interface Result {
   objective?: number | null;
   constraints?: Constraints;
   multipliers?: { residual: number | null; binding: BindingBound[] };
+  refrozen?: { evaluation: number; reason: string }[];
+  topology?: { kind: string; designs: number; evaluation: number; message: string }[];
   responses?: Numbers;
   response_errors?: Numbers;
   start?: { parameters: Inputs; responses: Numbers };

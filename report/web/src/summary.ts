@@ -297,6 +297,23 @@ function bindingTable(data: PageData, result: Result): HTMLElement | null {
       );
 }
 
+const EVENTS: Record<string, string> = {
+  film_rejoins: "films join in another way",
+  film_pinched: "a neck closes",
+};
+
+/** Where the model was frozen anew, and where films come to other lines or none. */
+function eventTexts(result: Result): string[] {
+  return [
+    ...(result.refrozen ?? []).map((r) => `frozen anew at evaluation ${count(r.evaluation)}: ${r.reason}`),
+    ...(result.topology ?? []).map(
+      (event) =>
+        `${EVENTS[event.kind] ?? words(event.kind)} at ${count(event.designs)} design${event.designs === 1 ? "" : "s"}, ` +
+        `nearest to the start at evaluation ${count(event.evaluation)}: ${event.message}`,
+    ),
+  ];
+}
+
 /** How far to trust it. */
 export function checksSection(data: PageData): HTMLElement | null {
   const result = data.result;
@@ -323,7 +340,8 @@ export function checksSection(data: PageData): HTMLElement | null {
     rows.push([mark(result.element_errors.energy < 0.15), "elements' own error in energy", percent(result.element_errors.energy, 2)]);
   }
   const warnings = result.warnings ?? [];
-  if (rows.length === 0 && warnings.length === 0) {
+  const events = eventTexts(result);
+  if (rows.length === 0 && warnings.length === 0 && events.length === 0) {
     return null;
   }
   return section(
@@ -333,5 +351,7 @@ export function checksSection(data: PageData): HTMLElement | null {
     warnings.length > 0
       ? h("ul", { class: "warnings" }, ...warnings.map((w) => h("li", {}, w)))
       : h("p", {}, "No warnings."),
+    events.length > 0 ? h("h3", {}, "On the way") : null,
+    events.length > 0 ? h("ul", { class: "events" }, ...events.map((text) => h("li", {}, text))) : null,
   );
 }
