@@ -255,6 +255,39 @@ class Fillets {
   }
 
   // --- wall points of lines -------------------------------------------------
+  /// Sides, of which `out` has some behind it: an edge, not a groove.
+  static bool is_open(const std::vector<SideFrame*>& frames, const Vec3& out) {
+    return std::any_of(frames.begin(), frames.end(),
+                       [&](const SideFrame* frame) {
+                         return frame->inward.normalized().dot(out) < kOpen;
+                       });
+  }
+
+  /// Unit normals of the sides, one for all that meet each other in edges:
+  /// around the edge of a column below a plate a ball rolls from side to side.
+  static Points normals_across_edges(const std::vector<SideFrame*>& frames) {
+    Points sums;
+    std::vector<char> used(frames.size(), 0);
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      if (used[i] != 0) {
+        continue;
+      }
+      Vec3 sum = frames[i]->normal.normalized();
+      for (std::size_t j = i + 1; j < frames.size(); ++j) {
+        const auto behind = [&](std::size_t side, std::size_t other) {
+          return frames[side]->inward.normalized().dot(
+                     frames[other]->normal.normalized()) < -kOpen;
+        };
+        if (used[j] == 0 && behind(i, j) && behind(j, i)) {
+          used[j] = 1;
+          sum += frames[j]->normal.normalized();
+        }
+      }
+      sums.push_back(sum.normalized());
+    }
+    return sums;
+  }
+
   // From where the sides' planes meet to the middle of the arc.
   void round_lines() {
     for (const auto& [point, frames] : frames_of_points()) {
@@ -266,15 +299,21 @@ class Fillets {
         normals +=
             static_cast<double>(ball.on[i]) * frames[i]->normal.normalized();
       }
-      const Vec3 out = (ball.inverse * normals).normalized();
-      const bool open = std::any_of(
-          frames.begin(), frames.end(), [&](const SideFrame* frame) {
-            return frame->inward.normalized().dot(out) < kOpen;
-          });
-      if (!open) {
-        add_move({frames[0]->fillet_wall, ball.point - fillet * out - sharp},
-                 moves_[point]);
+      Vec3 out = (ball.inverse * normals).normalized();
+      Vec3 center = ball.point - sharp;
+      if (is_open(frames, out)) {
+        std::vector<OffsetPlane> planes;
+        for (const Vec3& normal : normals_across_edges(frames)) {
+          planes.push_back({normal, fillet});
+        }
+        center = offset_corner(planes).point;
+        out = center.normalized();
+        if (planes.size() == frames.size() || planes.size() < 2 ||
+            is_open(frames, out)) {
+          continue;
+        }
       }
+      add_move({frames[0]->fillet_wall, center - fillet * out}, moves_[point]);
     }
   }
 

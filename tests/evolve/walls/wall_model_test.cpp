@@ -464,6 +464,23 @@ SurfaceMesh brim_on_column(double lean, int n) {
   return joined_films(films);
 }
 
+// Around the column's corner a ball of radius r rolls from side to side, below
+// the brim and beside the corner's edge: the middle of its arc there.
+TEST(Fillets, GoAroundTheEdgesOfAColumn) {
+  const double t = 0.3;
+  for (const double r : {0.05, 0.15}) {
+    const Made made = make(brim_on_column(0.0, 8), t, 0, r);
+    const Points& points = made.model.walls().at(0).surface.points;
+    const double way = r * (1.0 - std::sqrt(0.5));
+    const double out = 1.0 + 0.5 * t + way * std::sqrt(0.5);
+    const Points corners = {{out, out, -0.5 * t - way},
+                            {-out, out, -0.5 * t - way},
+                            {out, -out, -0.5 * t - way},
+                            {-out, -out, -0.5 * t - way}};
+    EXPECT_LT(farthest(corners, points), 1e-9);
+  }
+}
+
 // Under the brim, outside of the column, all moves away from the column's
 // corner; what lagged behind there would hang over.
 TEST(WallModel, KeepsFacetsInOrderAroundAColumn) {
