@@ -242,6 +242,9 @@ void check_join_ends(const Case& input, const films::FilmSystem& system,
   }
   for (std::size_t k = 0; k < ends.size(); ++k) {
     const films::JoinEnd& end = ends[k];
+    if (!end.held) {
+      continue;
+    }
     const FilmEntry& film = input.films[static_cast<std::size_t>(end.film)];
     const std::string start =
         fmt::format("{}: film '{}' joins {} along a line that ends at {}, ",
