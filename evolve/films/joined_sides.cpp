@@ -159,6 +159,29 @@ std::vector<JoinEnd> join_ends(const FilmSystem& system) {
   return ends;
 }
 
+std::vector<int> joining_order(const std::vector<FilmSpec>& films) {
+  std::set<std::string> missing;
+  for (const FilmSpec& film : films) {
+    if (!film.joins.empty()) {
+      missing.insert(film.name);
+    }
+  }
+  std::vector<int> order;
+  for (bool grows = true; grows;) {
+    grows = false;
+    for (std::size_t f = 0; f < films.size(); ++f) {
+      const bool ready = std::none_of(
+          films[f].joins.begin(), films[f].joins.end(),
+          [&](const auto& name) { return missing.count(name) > 0; });
+      if (ready && missing.erase(films[f].name) > 0) {
+        order.push_back(static_cast<int>(f));
+        grows = true;
+      }
+    }
+  }
+  return order;
+}
+
 bool may_meet(const FilmSystem& system, int a, int b) {
   for (const FilmSpec& one : system.films) {
     for (const FilmSpec& other : system.films) {

@@ -36,6 +36,10 @@ double join_reach(const curves::Curve& curve);
 
 std::vector<JoinEnd> join_ends(const FilmSystem& system);
 
+/// Films that join others (indices), each after those that it joins; without
+/// those that join each other in a circle.
+std::vector<int> joining_order(const std::vector<FilmSpec>& films);
+
 /// Do curves a and b (indices) belong to films of which one joins the other, or
 /// that both join others? They may meet.
 bool may_meet(const FilmSystem& system, int a, int b);

@@ -230,6 +230,12 @@ int FilmJoiner::corner_on(int film, const Corner& corner,
         "next",
         name, other, place_text(corner.place)));
   }
+  if (found < 0 && amid) {
+    throw NoWayAlong(fmt::format(
+        "film '{}' has more corners amid its line on '{}' than there are edges "
+        "near {}; take shorter edges, or leave corners out",
+        name, other, place_text(corner.place)));
+  }
   if (found < 0) {
     throw InvalidInput(fmt::format(
         "film '{}' passes from '{}' to '{}' at {}, and these two meet nowhere; "

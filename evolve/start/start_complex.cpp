@@ -357,35 +357,28 @@ class StartBuilder {
 
   void add_joining_films(double edge) {
     FilmJoiner joiner(system_, edge, result_);
+    for (const films::JoinedSide& side : films::joined_sides(system_)) {
+      joiner.find_corners(side.curve,
+                          rims_.at(system_.curves[side.curve].name).ids);
+    }
+    joiner.refine_joined();
     std::set<std::string> missing;
     for (const films::FilmSpec& film : system_.films) {
       if (!film.joins.empty()) {
         missing.insert(film.name);
       }
     }
-    for (const films::JoinedSide& side : films::joined_sides(system_)) {
-      joiner.find_corners(side.curve,
-                          rims_.at(system_.curves[side.curve].name).ids);
+    for (const int f : films::joining_order(system_.films)) {
+      const films::FilmSpec& film = system_.films[static_cast<std::size_t>(f)];
+      join(f, joiner);
+      add_film(film);
+      missing.erase(film.name);
     }
-    joiner.refine_joined();
-    while (!missing.empty()) {
-      const std::size_t before = missing.size();
-      for (std::size_t f = 0; f < system_.films.size(); ++f) {
-        const films::FilmSpec& film = system_.films[f];
-        const bool ready = std::none_of(
-            film.joins.begin(), film.joins.end(),
-            [&](const auto& name) { return missing.count(name) > 0; });
-        if (ready && missing.erase(film.name) > 0) {
-          join(static_cast<int>(f), joiner);
-          add_film(film);
-        }
-      }
-      if (missing.size() == before) {
-        throw InvalidInput(fmt::format(
-            "film '{}' joins films that join it; let one of them have curves "
-            "of its own there",
-            *missing.begin()));
-      }
+    if (!missing.empty()) {
+      throw InvalidInput(
+          fmt::format("film '{}' joins films that join it; let one of them "
+                      "have curves of its own there",
+                      *missing.begin()));
     }
   }
 

@@ -238,6 +238,12 @@ material = "steel"
                 ('joins = ["skin"]', 'joins = ["rib_0"]', "joins itself"),
                 ("free = [4]", "", r"all of its curves hold it"),
                 ('joins = ["skin"]\n', "", r"is free, and 1 film ends there"),
+                ('curves = ["base", "head"]\n',
+                 'curves = ["base", "head"]\njoins = ["rib_0"]\n', "in a circle"),
+                ("[walls.tube]",
+                 '[films.twin]\nkind = "disk"\ncurves = ["rib_0"]\n'
+                 'joins = ["skin"]\n\n[walls.tube]',
+                 "a side that joins a film is of one film alone"),
                 ('points = [["(foot + 0.0)', 'points = [["(foot - 2.0)',
                  r"'rib_0' joins skin along a line that ends at .* from the "
                  r"nearest")):
