@@ -182,8 +182,8 @@ std::vector<Side> sides_of(const SplitFilm& split, int cell,
     }
   }
   // The outline of a disk is one closed loop.
-  const std::vector<std::vector<int>> loops =
-      boundary_loops(corners_of(split.film.mesh, facets));
+  const std::vector<std::vector<int>> loops = boundary_loops(
+      corners_of(split.film.mesh, facets), split.film.mesh.points);
   if (loops.size() != 1) {
     throw MeshError("a film's patch is not simply connected");
   }

@@ -150,7 +150,7 @@ std::vector<double> seam_shares(const SplitFilm& split,
 Eigen::MatrixXd disk_measures(const SplitFilm& split) {
   const FilmMesh& mesh = split.film.mesh;
   const auto count = static_cast<Eigen::Index>(mesh.points.size());
-  const std::vector<int> loop = boundary_loops(mesh.facets).at(0);
+  const std::vector<int> loop = boundary_loops(mesh.facets, mesh.points).at(0);
   const std::vector<double> shares = shares_of(mesh, loop);
   const std::vector<double> seams = seam_shares(split, loop, shares);
   HarmonicProblem problem{mesh.points, mesh.facets, {}, {}, {}};
@@ -357,7 +357,8 @@ int rim_vertex(const SplitFilm& split, const std::vector<int>& loop,
 }
 
 FilmPatch whole_patch(const SplitFilm& split) {
-  const std::vector<int> loop = boundary_loops(split.film.mesh.facets).at(0);
+  const std::vector<int> loop =
+      boundary_loops(split.film.mesh.facets, split.film.mesh.points).at(0);
   std::vector<std::ptrdiff_t> at;
   for (const double place : four_corners(*(*split.rims)[0].curve)) {
     at.push_back(

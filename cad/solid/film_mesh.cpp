@@ -288,7 +288,7 @@ std::vector<double> bulge_volumes(const SurfaceMesh& mesh,
 }
 
 std::vector<std::vector<int>> boundary_loops(
-    const std::vector<Triangle>& facets) {
+    const std::vector<Triangle>& facets, const Points& points) {
   std::map<Edge, bool> directed;  // true: without its opposite
   for (const Triangle& t : facets) {
     for (int k = 0; k < 3; ++k) {
@@ -306,8 +306,12 @@ std::vector<std::vector<int>> boundary_loops(
   std::map<int, int> next;
   for (const auto& [edge, open] : directed) {
     if (!next.emplace(edge[0], edge[1]).second) {
+      const Vec3& p = points[static_cast<std::size_t>(edge[0])];
       throw MeshError(fmt::format(
-          "a film's boundary touches itself at vertex {}", edge[0]));
+          "a film's boundary touches itself at ({:.4g}, {:.4g}, {:.4g}), as "
+          "where two of its lines end in one point: let them end apart, or "
+          "write step-faceted",
+          p.x(), p.y(), p.z()));
     }
   }
   std::vector<std::vector<int>> loops;

@@ -47,6 +47,6 @@ std::vector<double> bulge_volumes(const SurfaceMesh& mesh,
 /// that the film is on the left. In order of their lowest vertex, which begins
 /// each. Throws MeshError where more than two boundary edges meet.
 std::vector<std::vector<int>> boundary_loops(
-    const std::vector<Triangle>& facets);
+    const std::vector<Triangle>& facets, const Points& points);
 
 }  // namespace meniscus::solid

@@ -104,7 +104,8 @@ void SolidBuilder::add_film(const std::string& name,
   // Its boundary loops lie on rims' curves.
   std::vector<FilmRim> rims;
   std::vector<SolidLoop> loops;
-  for (const std::vector<int>& loop : boundary_loops(mesh.facets)) {
+  for (const std::vector<int>& loop :
+       boundary_loops(mesh.facets, mesh.points)) {
     std::vector<int> whole;
     whole.reserve(loop.size());
     for (const int v : loop) {
@@ -188,7 +189,7 @@ void SolidBuilder::add_cap(const std::string& name,
     }
   }
   cap.plane = {mesh_.points[corners[0][0]], normal};
-  for (const std::vector<int>& loop : boundary_loops(corners)) {
+  for (const std::vector<int>& loop : boundary_loops(corners, mesh_.points)) {
     cap.loops.push_back(rims_.loop_of(loop));
   }
   caps_.push_back(std::move(cap));

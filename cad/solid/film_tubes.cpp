@@ -48,7 +48,8 @@ constexpr double kShrink = 0.85;    // of a tube's measure, from try to try
 /// Loops of the refined film, in the rims' order.
 std::vector<std::vector<int>> loops_of_rims(const SplitFilm& split) {
   std::vector<std::vector<int>> loops(split.rims->size());
-  for (std::vector<int>& loop : boundary_loops(split.film.mesh.facets)) {
+  for (std::vector<int>& loop :
+       boundary_loops(split.film.mesh.facets, split.film.mesh.points)) {
     const int rim = split.film.rim_of[loop[0]];
     loops[rim] = std::move(loop);
   }
@@ -77,7 +78,8 @@ Eigen::MatrixXd harmonic_measures(const SplitFilm& split) {
 std::optional<Tube> tube_of(const SplitFilm& split, int cell,
                             std::size_t& loops) {
   const std::vector<std::vector<int>> found =
-      boundary_loops(corners_of(split.film.mesh, facets_of(split, cell)));
+      boundary_loops(corners_of(split.film.mesh, facets_of(split, cell)),
+                     split.film.mesh.points);
   loops = found.size();
   if (found.size() != 2) {
     return {};

@@ -102,7 +102,8 @@ class TurnedBuilder {
   /// Within its rim, which nowhere crosses angle 0.
   void build_part() {
     const RimEdges& rim = rims_[film_.rims[0]];
-    const std::vector<int> loop = boundary_loops(film_.mesh.facets)[0];
+    const std::vector<int> loop =
+        boundary_loops(film_.mesh.facets, film_.mesh.points)[0];
     const Vec3& p = film_.mesh.points[loop[0]];
     const Vec3 way = film_.mesh.points[loop[1]] - p;
     const double here = rim.curve().nearest(p + 0.5 * way);

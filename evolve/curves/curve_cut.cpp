@@ -92,7 +92,7 @@ double asymmetry(const CurveShape& shape, const Vec3& at, const Vec3& normal,
 std::vector<double> with_parameters(const CurveShape& shape,
                                     std::vector<double> samples,
                                     const std::vector<double>& wanted) {
-  const std::vector<double> corners = corner_parameters(shape);
+  std::vector<double> kept = corner_parameters(shape);
   for (const double t : wanted) {
     const auto after = std::upper_bound(samples.begin(), samples.end(), t);
     const bool wraps = after == samples.begin() || after == samples.end();
@@ -101,10 +101,10 @@ std::vector<double> with_parameters(const CurveShape& shape,
     const double piece = *b - *a + (wraps ? 1.0 : 0.0);
     const double from_a = wrapped(t - *a);
     const double to_b = wrapped(*b - t);
-    const auto gives_way = [&](double distance, double corner) {
+    const auto gives_way = [&](double distance, double sample) {
       constexpr double kSame = 1e-9;
       return distance < kSame * piece ||
-             (distance < kNextTo * piece && !is_corner(corners, corner));
+             (distance < kNextTo * piece && !is_corner(kept, sample));
     };
     if (gives_way(from_a, *a)) {
       *a = t;
@@ -113,6 +113,7 @@ std::vector<double> with_parameters(const CurveShape& shape,
     } else {
       samples.push_back(t);
     }
+    kept.push_back(t);
     std::sort(samples.begin(), samples.end());
   }
   return samples;

@@ -19,7 +19,8 @@ double asymmetry(const CurveShape& shape, const Vec3& at, const Vec3& normal,
                  double t);
 
 /// The parameters of `samples`, increasing, with those `wanted` among them:
-/// a sample that is next to one and no corner gives way to it.
+/// a sample that is next to one gives way to it, but for corners and others
+/// that are wanted.
 std::vector<double> with_parameters(const CurveShape& shape,
                                     std::vector<double> samples,
                                     const std::vector<double>& wanted);

@@ -58,7 +58,9 @@ class EdgePopper {
     // Each turn takes one film off the line.
     while (crowded(v, u) && !failed_.contains(edge_key(v, u))) {
       const Chain chain = chain_from(v, u);
-      if (chain.points.size() == 2 && may_change(v, u)) {
+      // Halves that are lines of one edge again lie in films that coincide.
+      if (chain.points.size() == 2 && may_change(v, u) &&
+          !halves_.contains(v) && !halves_.contains(u)) {
         halve(v, u);  // popped when its new point's turn comes
         return;
       }
@@ -188,6 +190,7 @@ class EdgePopper {
   // A line of one edge gets a point that can be doubled.
   void halve(int a, int b) {
     const int m = cut_.add_vertex(0.5 * (cut_.points()[a] + cut_.points()[b]));
+    halves_.insert(m);
     for (const int f : cut_.along(a, b)) {
       Triangle other = cut_.facet(f);
       std::replace(other.begin(), other.end(), a, m);
@@ -318,6 +321,7 @@ class EdgePopper {
   FilmCutter cut_;
   PopReport report_;
   std::set<Edge> failed_;
+  std::set<int> halves_;  // the points that halve() made
 };
 
 }  // namespace

@@ -17,8 +17,8 @@ namespace meniscus::start {
 
 namespace {
 
-constexpr double kJoinReach = 1e-4;    // x the size: a side ends there
 constexpr double kCornerReach = 1e-9;  // x the size
+constexpr double kOneEnd = 1e-6;       // of a curve's parameter
 
 double extent_of(const films::FilmComplex& complex) {
   return bounding_diagonal(complex.mesh.points);
@@ -58,14 +58,14 @@ std::map<int, std::vector<double>> cuts_for_joins(
     const films::FilmSystem& system) {
   std::map<int, std::vector<double>> cuts;
   for (const films::JoinEnd& end : films::join_ends(system)) {
-    if (end.meets) {
+    if (end.meets || !end.held) {
       cuts[end.curve].push_back(end.t);
     }
   }
   for (auto& [curve, at] : cuts) {
     std::sort(at.begin(), at.end());
     at.erase(std::unique(at.begin(), at.end(),
-                         [](double a, double b) { return b - a < 1e-9; }),
+                         [](double a, double b) { return b - a < kOneEnd; }),
              at.end());
   }
   return cuts;
@@ -219,11 +219,21 @@ int FilmJoiner::corner_on(int film, const Corner& corner,
   const std::string& name = system_.films[static_cast<std::size_t>(film)].name;
   const std::string& other = complex_.surfaces[labels.front()].name;
   if (corner.held &&
-      (found < 0 || (complex_.mesh.points[found] - corner.place).norm() >
-                        kJoinReach * extent_of(complex_))) {
+      (found < 0 ||
+       (complex_.mesh.points[found] - corner.place).norm() >
+           films::join_reach(system_.curves[static_cast<std::size_t>(
+               complex_.vertices[found].curve)]))) {
     throw InvalidInput(fmt::format(
         "film '{}' joins '{}' along a line that ends at {}, where no curve "
-        "holds that film",
+        "holds that film; let it end on one of that film's curves or on "
+        "another film, and have a corner where it passes from one film to the "
+        "next",
+        name, other, place_text(corner.place)));
+  }
+  if (found < 0 && amid) {
+    throw NoWayAlong(fmt::format(
+        "film '{}' has more corners amid its line on '{}' than there are edges "
+        "near {}; take shorter edges, or leave corners out",
         name, other, place_text(corner.place)));
   }
   if (found < 0) {
@@ -289,7 +299,7 @@ std::vector<int> FilmJoiner::chain(int film, int label, int from, int to,
     }
   }
   if (before.count(to) == 0) {
-    throw InvalidInput(fmt::format(
+    throw NoWayAlong(fmt::format(
         "film '{}' finds no way along '{}' from {} to {}; take shorter edges, "
         "or let it begin farther from other lines and rims",
         system_.films[static_cast<std::size_t>(film)].name,
@@ -328,7 +338,7 @@ std::vector<int> FilmJoiner::closed_chain(int film,
   }
   if (std::set<int>(stops.begin(), stops.end()).size() < kParts ||
       stops.back() < 0) {
-    throw InvalidInput(fmt::format(
+    throw NoWayAlong(fmt::format(
         "film '{}' joins '{}' along a line that is shorter than three edges of "
         "its start, {:.4g} each; take shorter edges",
         system_.films[static_cast<std::size_t>(film)].name,

@@ -9,10 +9,17 @@
 #include <set>
 #include <vector>
 
+#include "core/error.h"
 #include "evolve/films/film_complex.h"
 #include "evolve/films/joined_sides.h"
 
 namespace meniscus::start {
+
+/// A line finds no edges to run along: shorter ones may have them.
+class NoWayAlong : public InvalidInput {
+ public:
+  using InvalidInput::InvalidInput;
+};
 
 /// By curve of a film that others join: the parameters at which it needs a
 /// vertex, where the free sides of these end.
@@ -21,7 +28,7 @@ std::map<int, std::vector<double>> cuts_for_joins(
 
 class FilmJoiner {
  public:
-  /// Keeps references. `edge` [length]: of the start.
+  /// Keeps references. `edge` [length]: of the films that others join.
   FilmJoiner(const films::FilmSystem& system, double edge,
              films::FilmComplex& complex);
 
@@ -38,7 +45,7 @@ class FilmJoiner {
   /// of its other sides where `mark`. A corner that moves onto another film is
   /// another vertex there: of all facets and marks so far, and of replaced().
   /// Throws InvalidInput, naming film and place, where a side ends amid a film,
-  /// or finds no way along it.
+  /// NoWayAlong where it finds none.
   std::vector<int> join_rim(int film, int curve, const std::vector<int>& rim,
                             bool mark);
 

@@ -39,6 +39,8 @@ namespace meniscus::start {
 
 namespace {
 
+constexpr double kShortestToJoin = 0.125;  // x the edge
+
 struct Rim {
   int curve = 0;
   std::vector<int> ids;  // of its points, in order
@@ -330,42 +332,53 @@ class StartBuilder {
     }
   }
 
-  /// Those that end on others, after these.
+  /// Those that end on others, after these; where lines are too close together
+  /// for the start's edges, along shorter ones.
   void add_joining_films() {
-    FilmJoiner joiner(system_, edge_, result_);
+    films_join_ = std::any_of(
+        system_.films.begin(), system_.films.end(),
+        [](const films::FilmSpec& film) { return !film.joins.empty(); });
+    const films::FilmComplex before =
+        films_join_ ? result_ : films::FilmComplex();
+    const std::map<std::string, Rim> rims = rims_;
+    for (double edge = edge_; films_join_; edge *= 0.5) {
+      try {
+        add_joining_films(edge);
+        return;
+      } catch (const NoWayAlong&) {
+        if (edge <= kShortestToJoin * edge_) {
+          throw;
+        }
+        result_ = before;
+        rims_ = rims;
+      }
+    }
+  }
+
+  void add_joining_films(double edge) {
+    FilmJoiner joiner(system_, edge, result_);
+    for (const films::JoinedSide& side : films::joined_sides(system_)) {
+      joiner.find_corners(side.curve,
+                          rims_.at(system_.curves[side.curve].name).ids);
+    }
+    joiner.refine_joined();
     std::set<std::string> missing;
     for (const films::FilmSpec& film : system_.films) {
       if (!film.joins.empty()) {
         missing.insert(film.name);
       }
     }
-    films_join_ = !missing.empty();
-    if (!films_join_) {
-      return;
+    for (const int f : films::joining_order(system_.films)) {
+      const films::FilmSpec& film = system_.films[static_cast<std::size_t>(f)];
+      join(f, joiner);
+      add_film(film);
+      missing.erase(film.name);
     }
-    for (const films::JoinedSide& side : films::joined_sides(system_)) {
-      joiner.find_corners(side.curve,
-                          rims_.at(system_.curves[side.curve].name).ids);
-    }
-    joiner.refine_joined();
-    while (!missing.empty()) {
-      const std::size_t before = missing.size();
-      for (std::size_t f = 0; f < system_.films.size(); ++f) {
-        const films::FilmSpec& film = system_.films[f];
-        const bool ready = std::none_of(
-            film.joins.begin(), film.joins.end(),
-            [&](const auto& name) { return missing.count(name) > 0; });
-        if (ready && missing.erase(film.name) > 0) {
-          join(static_cast<int>(f), joiner);
-          add_film(film);
-        }
-      }
-      if (missing.size() == before) {
-        throw InvalidInput(fmt::format(
-            "film '{}' joins films that join it; let one of them have curves "
-            "of its own there",
-            *missing.begin()));
-      }
+    if (!missing.empty()) {
+      throw InvalidInput(
+          fmt::format("film '{}' joins films that join it; let one of them "
+                      "have curves of its own there",
+                      *missing.begin()));
     }
   }
 

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "evolve/films/joined_sides.h"
 #include "pipeline/case_data/case_curves.h"
 #include "pipeline/case_data/case_loads.h"
 #include "pipeline/case_data/case_sides.h"
@@ -774,6 +775,23 @@ void check_joined_films(const Case& input, CaseProblems& problems) {
                                "hold it; say of a curve free = true, or which "
                                "of its sides are free (free = [1])",
                                film.spec.name, film.spec.joins.front()));
+    }
+  }
+  std::vector<films::FilmSpec> specs;
+  for (const FilmEntry& film : input.films) {
+    specs.push_back(film.spec);
+    std::erase(specs.back().joins, film.spec.name);  // told
+  }
+  const std::vector<int> order = films::joining_order(specs);
+  for (std::size_t f = 0; f < specs.size(); ++f) {
+    if (!specs[f].joins.empty() &&
+        std::count(order.begin(), order.end(), static_cast<int>(f)) == 0) {
+      problems.add(
+          input.films[f].line,
+          fmt::format("film '{}' joins '{}', and films join each other in a "
+                      "circle; let one of them have curves of its own there",
+                      specs[f].name, specs[f].joins.front()));
+      break;
     }
   }
 }

@@ -168,7 +168,7 @@ void merge_curves(Case& input, CaseProblems& problems) {
         place(input, other.line), other.name, one.name,
         distance[static_cast<int>(c)], unit, one.name,
         hold_if_one_holds(one, other) ? "; it holds films, as one of the two "
-                                        "is not free"
+                                        "is not free all around"
                                       : ""));
   }
   if (kept.empty()) {

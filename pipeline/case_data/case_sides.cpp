@@ -208,15 +208,23 @@ void check_free_sides(const Case& input, const films::FilmSystem& system,
           films[at == first.end() ? own : at->second];
       if (is_free && there.size() < 3 && joined.count(own) == 0 &&
           !is_cell(input, curve.name)) {
+        const bool joins = std::any_of(system.films.begin(), system.films.end(),
+                                       [&](const films::FilmSpec& film) {
+                                         return there.contains(film.name) &&
+                                                !film.joins.empty();
+                                       });
         values.problems().push_back(fmt::format(
             "{}: the side from {} to {} of curve '{}' is free, and {} film{} "
-            "there{}{}; lines balance where three films or more meet: let more "
-            "end at that side, name the film that it joins (joins = "
-            "[\"FILM\"]), or hold it",
+            "there{}{}; {}",
             place(input, input.curves[c].line), text(sides[k].from),
             text(sides[k].to), curve.name, there.size(),
             there.size() == 1 ? " ends" : "s end", there.empty() ? "" : ", ",
-            fmt::join(there, ", ")));
+            fmt::join(there, ", "),
+            joins ? "a side that joins a film is of one film alone: draw them "
+                    "apart, or part the film that they join by a curve there"
+                  : "lines balance where three films or more meet: let more "
+                    "end at that side, name the film that it joins (joins = "
+                    "[\"FILM\"]), or hold it"));
         break;
       }
     }
@@ -242,6 +250,9 @@ void check_join_ends(const Case& input, const films::FilmSystem& system,
   }
   for (std::size_t k = 0; k < ends.size(); ++k) {
     const films::JoinEnd& end = ends[k];
+    if (!end.held) {
+      continue;
+    }
     const FilmEntry& film = input.films[static_cast<std::size_t>(end.film)];
     const std::string start =
         fmt::format("{}: film '{}' joins {} along a line that ends at {}, ",

@@ -632,7 +632,6 @@ void read_films(CaseContext& context, const toml::table& root,
   for (const CaseTable& table : named_tables(context, root, "films")) {
     result.films.push_back(read_film(context, table, known, result));
   }
-  case_data::check_joined_films(result, context.problems);
 }
 
 void read_solids(CaseContext& context, const std::vector<CaseTable>& solids,

@@ -193,6 +193,7 @@ void read_geometry(CaseContext& context, const toml::table& root,
       result.sharing_sides = case_data::curves_that_share_sides(result);
     }
   }
+  case_data::check_joined_films(result, context.problems);
   read_materials(context, root, result);
   const std::size_t before = context.problems.size();
   read_bodies(context, root, result);

@@ -44,20 +44,38 @@ std::vector<std::string> wall_films(CaseContext& context,
   return films;
 }
 
+bool joins(const case_data::Case& input, const case_data::WallEntry& wall,
+           const case_data::WallEntry& other) {
+  const auto is_of = [](const case_data::WallEntry& w,
+                        const std::string& film) {
+    return std::find(w.films.begin(), w.films.end(), film) != w.films.end();
+  };
+  return std::any_of(input.films.begin(), input.films.end(),
+                     [&](const case_data::FilmEntry& film) {
+                       const std::vector<std::string>& joined = film.spec.joins;
+                       return is_of(wall, film.spec.name) &&
+                              std::any_of(joined.begin(), joined.end(),
+                                          [&](const std::string& name) {
+                                            return is_of(other, name);
+                                          });
+                     });
+}
+
 bool meet(const case_data::Case& input, const case_data::WallEntry& a,
           const case_data::WallEntry& b, const case_data::CurvePairs& sharing) {
   const std::vector<std::string> there = case_data::curves_of_wall(input, b);
   const std::vector<std::string> here = case_data::curves_of_wall(input, a);
-  return std::any_of(here.begin(), here.end(), [&](const std::string& one) {
-    return std::any_of(there.begin(), there.end(),
-                       [&](const std::string& other) {
-                         return one == other || sharing.contains({one, other});
-                       });
-  });
+  return joins(input, a, b) || joins(input, b, a) ||
+         std::any_of(here.begin(), here.end(), [&](const std::string& one) {
+           return std::any_of(
+               there.begin(), there.end(), [&](const std::string& other) {
+                 return one == other || sharing.contains({one, other});
+               });
+         });
 }
 
-/// Walls whose films share a curve, or a side of one, become one body, numbered
-/// by its first.
+/// Walls whose films share a curve or a side of one, or of which one joins the
+/// other, become one body, numbered by its first.
 void find_regions(CaseContext& context, case_data::Case& result) {
   std::vector<case_data::WallEntry>& walls = result.walls;
   for (std::size_t k = 0; k < walls.size(); ++k) {

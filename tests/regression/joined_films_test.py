@@ -201,6 +201,27 @@ class JoinedFilms(ProgramTest):
                                       done.stdout + done.stderr)[1])
                 self.assertLess(gap, 0.01)
 
+    def test_walls_of_their_own_thickness_are_one_body(self):
+        for seed, side in enumerate(("both", "inside", "outside")):
+            with self.subTest(seed=seed):
+                text = ribbed(seed)
+                names = re.search(r'films = \["skin", (.*)\]', text)[1]
+                fillet = re.search(r"^fillet = .*$", text, re.M)[0]
+                text = text.replace(f', {names}', "").replace(
+                    "[materials.steel]", f"""[walls.ribs]
+films = [{names}]
+thickness = "0.6 * wall"
+{fillet}
+material = "steel"
+
+[materials.steel]""").replace(fillet, f'{fillet}\nside = "{side}"', 1)
+                path = self.case(text)
+                out, _ = self.run_files(path, f"own_{seed}")
+                self.expect(self.call("export", out, "--format", "step"), 0,
+                            "valid closed solid")
+                self.expect(self.call("check-gradient", path), 0,
+                            "all 12 derivatives agree")
+
     def test_where_a_shelf_was_drawn_has_no_say(self):
         masses = []
         for share in (0.35, 0.5, 0.65):
@@ -217,6 +238,12 @@ class JoinedFilms(ProgramTest):
                 ('joins = ["skin"]', 'joins = ["rib_0"]', "joins itself"),
                 ("free = [4]", "", r"all of its curves hold it"),
                 ('joins = ["skin"]\n', "", r"is free, and 1 film ends there"),
+                ('curves = ["base", "head"]\n',
+                 'curves = ["base", "head"]\njoins = ["rib_0"]\n', "in a circle"),
+                ("[walls.tube]",
+                 '[films.twin]\nkind = "disk"\ncurves = ["rib_0"]\n'
+                 'joins = ["skin"]\n\n[walls.tube]',
+                 "a side that joins a film is of one film alone"),
                 ('points = [["(foot + 0.0)', 'points = [["(foot - 2.0)',
                  r"'rib_0' joins skin along a line that ends at .* from the "
                  r"nearest")):

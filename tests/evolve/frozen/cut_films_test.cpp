@@ -1,5 +1,6 @@
 // Films between curves that planes of symmetry cut: halves and quarters are
 // the whole's.
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -296,6 +297,18 @@ TEST(CutFilms, CornersNextToAPlaneAreWhereItPasses) {
   EXPECT_THAT(at, ElementsAre(0.0, 0.5));
   const std::vector<double> samples = curves::sample_parameters(square, 0.1);
   EXPECT_EQ(curves::with_parameters(square, samples, at), samples);
+}
+
+// However near to each other.
+TEST(CutFilms, AllPlacesThatAreWantedAreThere) {
+  const curves::Circle circle{Vec3::Zero(), Vec3::UnitZ(), 1.0};
+  const std::vector<double> wanted = {0.31, 0.312, 0.315, 0.999, 0.9995};
+  const std::vector<double> samples = curves::with_parameters(
+      circle, curves::sample_parameters(circle, 1.0), wanted);
+  EXPECT_TRUE(std::is_sorted(samples.begin(), samples.end()));
+  for (const double t : wanted) {
+    EXPECT_EQ(std::count(samples.begin(), samples.end(), t), 1) << t;
+  }
 }
 
 /// The first film's highest point.

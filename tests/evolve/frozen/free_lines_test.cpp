@@ -534,5 +534,13 @@ TEST(JoinedFilm, SaysWhereItCannotEnd) {
       << failure_of(around);
 }
 
+// It shrinks to its line, where films coincide and no line can be popped.
+TEST(JoinedFilm, ThatNothingHoldsComesToAnEnd) {
+  const curves::Circle beside{Vec3(1, 0, 0), Vec3::UnitX(), 0.25};
+  const frozen::FilmModel model = frozen::FilmModel::freeze(
+      joined_rings(0.3, beside), {.edge = 0.15, .refinements = 0});
+  EXPECT_TRUE(model.reference().failure);
+}
+
 }  // namespace
 }  // namespace meniscus::free_lines_test
