@@ -47,8 +47,8 @@ TEST(FilmMesh, FoldsAreFlippedAway) {
     EXPECT_GT(least_height(mesh), 0.0) << k;
     EXPECT_EQ(mesh.facets != before, is_folded) << k;
     // The outline stays, and so does the number of facets.
-    EXPECT_EQ(solid::boundary_loops(mesh.facets),
-              solid::boundary_loops(before));
+    EXPECT_EQ(solid::boundary_loops(mesh.facets, mesh.points),
+              solid::boundary_loops(before, mesh.points));
   }
   EXPECT_GT(folded, 5);
 }
