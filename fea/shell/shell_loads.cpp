@@ -22,10 +22,6 @@ Vec3 acceleration(const ShellLoads& loads, const Vec3& x) {
   return a;
 }
 
-bool has_mass_loads(const ShellLoads& loads) {
-  return loads.spin.has_value() || loads.gravity != Vec3::Zero();
-}
-
 /// Mass times acceleration; the latter is linear in the place.
 WholeVector mass_forces(const Facet& facet, const ShellLoads& loads) {
   const auto X = triples(facet);
@@ -81,22 +77,19 @@ bool presses(const WallPressure& p) {
 }
 
 void add_edge(const ShellMesh& mesh, const EdgeLoad& load, VectorX& f) {
-  for (const GaussPoint& g : gauss_rule(3)) {
-    const double s = g.at;
-    const std::array<double, 3> N = {(1.0 - s) * (1.0 - 2.0 * s),
-                                     s * (2.0 * s - 1.0), 4.0 * s * (1.0 - s)};
-    const std::array<double, 3> slope = {4.0 * s - 3.0, 4.0 * s - 1.0,
-                                         4.0 - 8.0 * s};
-    Vec3 tangent = Vec3::Zero();
+  for (const EdgePoint& p : edge_points(mesh, load.nodes)) {
+    const double length = p.weight * p.tangent.norm();
     for (int k = 0; k < 3; ++k) {
-      tangent += slope[k] * mesh.nodes[load.nodes[k]];
-    }
-    const double length = g.weight * tangent.norm();
-    for (int k = 0; k < 3; ++k) {
-      f.segment<3>(6L * load.nodes[k]) += length * N[k] * load.force;
-      f.segment<3>(6L * load.nodes[k] + 3) += length * N[k] * load.moment;
+      f.segment<3>(6L * load.nodes[k]) += length * p.shape[k] * load.force;
+      f.segment<3>(6L * load.nodes[k] + 3) += length * p.shape[k] * load.moment;
     }
   }
+}
+
+}  // namespace
+
+bool has_mass_loads(const ShellLoads& loads) {
+  return loads.spin.has_value() || loads.gravity != Vec3::Zero();
 }
 
 void check_loads(const ShellMesh& mesh, const ShellLoads& loads) {
@@ -120,7 +113,24 @@ void check_loads(const ShellMesh& mesh, const ShellLoads& loads) {
   }
 }
 
-}  // namespace
+std::array<EdgePoint, 3> edge_points(const ShellMesh& mesh,
+                                     const std::array<int, 3>& nodes) {
+  std::array<EdgePoint, 3> points;
+  const std::vector<GaussPoint> rule = gauss_rule(3);
+  for (int q = 0; q < 3; ++q) {
+    const double s = rule[q].at;
+    EdgePoint& p = points[q];
+    p.weight = rule[q].weight;
+    p.shape = {(1.0 - s) * (1.0 - 2.0 * s), s * (2.0 * s - 1.0),
+               4.0 * s * (1.0 - s)};
+    p.slope = {4.0 * s - 3.0, 4.0 * s - 1.0, 4.0 - 8.0 * s};
+    p.tangent = Vec3::Zero();
+    for (int k = 0; k < 3; ++k) {
+      p.tangent += p.slope[k] * mesh.nodes[nodes[k]];
+    }
+  }
+  return points;
+}
 
 std::vector<WallPressure> wall_pressures(const ShellMesh& mesh,
                                          const ShellLoads& loads) {

@@ -53,6 +53,21 @@ VectorX nodal_forces(const ShellMesh& mesh,
                      const std::vector<Section>& sections,
                      const ShellLoads& loads);
 
+/// As nodal_forces() does.
+void check_loads(const ShellMesh& mesh, const ShellLoads& loads);
+
+bool has_mass_loads(const ShellLoads& loads);
+
+/// A point of an edge's rule (three, on [0, 1]).
+struct EdgePoint {
+  double weight;
+  std::array<double, 3> shape;
+  std::array<double, 3> slope;
+  Vec3 tangent;
+};
+std::array<EdgePoint, 3> edge_points(const ShellMesh& mesh,
+                                     const std::array<int, 3>& nodes);
+
 /// All pressures on one facet.
 struct WallPressure {
   double negative = 0.0;

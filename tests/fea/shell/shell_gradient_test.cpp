@@ -23,6 +23,7 @@ MappedShell saddle() {
 
 std::vector<Section> layered() {
   element::Material fiber{"fiber", 1.0, 0.3, 1.0, {}};
+  fiber.thermal_expansion = {1e-3, 3e-3, 3e-3};
   fiber.orthotropic = element::Orthotropic{
       {130.0, 9.0, 9.0}, {0.3, 0.3, 0.4}, {5.0, 5.0, 3.0}, {}};
   Section section;
@@ -43,73 +44,143 @@ VectorX six_waves(const ShellMesh& mesh, double phase) {
   return v;
 }
 
-TEST(ShellGradient, OfWorkMeetsDifferences) {
+Points wave_of(const Points& places, double phase) {
+  Points move;
+  for (const Vec3& x : places) {
+    move.push_back(derivatives::wave(x, phase));
+  }
+  return move;
+}
+
+/// Loads of every kind.
+ShellLoads all_loads(const MappedShell& shell) {
+  ShellLoads loads;
+  for (int f = 0; f < static_cast<int>(shell.mesh.facets.size()); ++f) {
+    loads.pressures.push_back({f, 1.0 + 0.3 * f, WallSide::Negative});
+    loads.pressures.push_back({f, 0.4, WallSide::Positive});
+    loads.pressures.push_back({f, -0.7, WallSide::Middle});
+  }
+  for (const auto& edge :
+       shell.edges([](double s, double) { return s > 1.0 - 1e-9; })) {
+    loads.edges.push_back({edge, {1.0, -2.0, 0.5}, {0.2, 0.1, -0.3}});
+  }
+  loads.gravity = {0.5, 3.0, -9.0};
+  loads.spin = loads::Spin{{0.2, -0.1, 0.3}, {1.0, 2.0, 3.0}, 1.7};
+  loads.temperature = WallTemperature{.mean = 30.0, .across = 12.0};
+  loads.nodal = six_waves(shell.mesh, 0.5);
+  return loads;
+}
+
+void expect_residual(const ShellLoads& loads) {
   const MappedShell shell = saddle();
   const std::vector<Section> sections = layered();
   const VectorX u = six_waves(shell.mesh, 0.3);
   const VectorX v = six_waves(shell.mesh, 1.9);
-  const ShellGradient here = stiffness_gradient(shell.mesh, sections, v, u);
+  const auto value = [&](const ShellMesh& mesh) {
+    return residual_gradient(mesh, sections, loads, v, u).value;
+  };
+  const ShellGradient here =
+      residual_gradient(shell.mesh, sections, loads, v, u);
   derivatives::Check check;
-  Points move;
-  for (const Vec3& x : shell.mesh.nodes) {
-    move.push_back(derivatives::wave(x, 0.7));
-  }
+  const Points move = wave_of(shell.mesh.nodes, 0.7);
   check.exact = flat(here.by_nodes).dot(flat(move));
   check.scale = flat(here.by_nodes).cwiseProduct(flat(move)).lpNorm<1>();
   derivatives::expect_derivative(check, [&](double h) {
     ShellMesh moved = shell.mesh;
     flat(moved.nodes) += h * flat(move);
-    return stiffness_gradient(moved, sections, v, u).value;
+    return value(moved);
   });
+  const Points thicker = wave_of(shell.mesh.nodes, 0.2);
   check.exact = 0.0;
   check.scale = 0.0;
   for (std::size_t f = 0; f < here.by_thickness.size(); ++f) {
-    const Vec3 dt = 0.05 * derivatives::wave(shell.mesh.nodes[f], 0.2);
-    check.exact += here.by_thickness[f].dot(dt);
-    check.scale += here.by_thickness[f].cwiseProduct(dt).lpNorm<1>();
+    check.exact += 0.05 * here.by_thickness[f].dot(thicker[f]);
+    check.scale +=
+        0.05 * here.by_thickness[f].cwiseProduct(thicker[f]).lpNorm<1>();
   }
   derivatives::expect_derivative(check, [&](double h) {
-    ShellMesh thicker = shell.mesh;
-    for (std::size_t f = 0; f < thicker.thickness.size(); ++f) {
-      thicker.thickness[f] +=
-          h * 0.05 * derivatives::wave(shell.mesh.nodes[f], 0.2);
+    ShellMesh other = shell.mesh;
+    for (std::size_t f = 0; f < other.thickness.size(); ++f) {
+      other.thickness[f] += 0.05 * h * thicker[f];
     }
-    return stiffness_gradient(thicker, sections, v, u).value;
+    return value(other);
   });
 }
 
-/// Its value is the work of the assembled stiffness, and minus its derivative
-/// that of the compliance.
-TEST(ShellGradient, OfComplianceMeetsSolvedDifferences) {
+TEST(ShellGradient, OfResidualsMeetsDifferences) {
   const MappedShell shell = saddle();
-  const std::vector<Section> sections = layered();
+  const ShellLoads all = all_loads(shell);
+  {
+    SCOPED_TRACE("stiffness alone");
+    expect_residual({});
+  }
+  {
+    SCOPED_TRACE("pressures");
+    expect_residual({.pressures = all.pressures});
+  }
+  {
+    SCOPED_TRACE("edges");
+    expect_residual({.edges = all.edges});
+  }
+  {
+    SCOPED_TRACE("weight and spin");
+    expect_residual({.gravity = all.gravity, .spin = all.spin});
+  }
+  {
+    SCOPED_TRACE("temperature");
+    expect_residual({.temperature = all.temperature});
+  }
+}
+
+std::vector<NodeSupport> held_side(const MappedShell& shell) {
   std::vector<NodeSupport> supports;
   shell_shapes::hold(supports,
                      shell.nodes([](double s, double) { return s < 1e-9; }),
                      "xyzabc");
-  ShellLoads loads;
-  loads.nodal = six_waves(shell.mesh, 0.5);
-  const auto compliance = [&](const ShellMesh& mesh) {
-    const ShellSystem system(mesh, sections, supports);
-    return loads.nodal.dot(system.solve(loads).displacement);
-  };
+  return supports;
+}
+
+/// Two codes: the tape's and the assembled one's.
+TEST(ShellGradient, ItsValueIsTheSystemsResidual) {
+  const MappedShell shell = saddle();
+  const std::vector<Section> sections = layered();
+  const ShellLoads loads = all_loads(shell);
+  const std::vector<NodeSupport> supports = held_side(shell);
   const ShellSystem system(shell.mesh, sections, supports);
   const ShellSolution solution = system.solve(loads);
-  const ShellGradient here = stiffness_gradient(
-      shell.mesh, sections, solution.displacement, solution.displacement);
-  EXPECT_NEAR(here.value / (2.0 * solution.strain_energy), 1.0, 1e-10);
-  Points move;
-  for (const Vec3& x : shell.mesh.nodes) {
-    move.push_back(derivatives::wave(x, 0.7));
-  }
+  const VectorX v = six_waves(shell.mesh, 1.9);
+  const double value =
+      residual_gradient(shell.mesh, sections, loads, v, solution.displacement)
+          .value;
+  const double size = v.cwiseProduct(solution.reaction).lpNorm<1>();
+  EXPECT_NEAR(value, -v.dot(solution.reaction), 1e-9 * size);
+}
+
+/// A displacement under all loads, by the adjoint and by solving again.
+TEST(ShellGradient, OfADisplacementMeetsSolvedDifferences) {
+  const MappedShell shell = saddle();
+  const std::vector<Section> sections = layered();
+  const ShellLoads loads = all_loads(shell);
+  const std::vector<NodeSupport> supports = held_side(shell);
+  VectorX weights = VectorX::Zero(loads.nodal.size());
+  weights[6L * shell.node(1.0, 1.0) + 2] = 1.0;
+  const auto response = [&](const ShellMesh& mesh) {
+    const ShellSystem system(mesh, sections, supports);
+    return weights.dot(system.solve(loads).displacement);
+  };
+  const ShellSystem system(shell.mesh, sections, supports);
+  const ShellGradient here = residual_gradient(
+      shell.mesh, sections, loads, system.solve_forces(weights),
+      system.solve(loads).displacement);
+  const Points move = wave_of(shell.mesh.nodes, 0.7);
   derivatives::Check check;
   check.tolerance = 1e-7;
-  check.exact = -flat(here.by_nodes).dot(flat(move));
+  check.exact = flat(here.by_nodes).dot(flat(move));
   check.scale = flat(here.by_nodes).cwiseProduct(flat(move)).lpNorm<1>();
   derivatives::expect_derivative(check, [&](double h) {
     ShellMesh moved = shell.mesh;
     flat(moved.nodes) += h * flat(move);
-    return compliance(moved);
+    return response(moved);
   });
 }
 
