@@ -13,6 +13,8 @@ using Moments = Eigen::Matrix<double, 8, 1>;
 using Matrix8 = Eigen::Matrix<double, 8, 8>;
 using Form = Eigen::Vector2d;  // components of a one-form
 
+constexpr double kCorner[3][2] = {{0, 0}, {1, 0}, {0, 1}};
+
 struct Place {
   double xi, eta, weight;
 };
@@ -42,7 +44,6 @@ Eigen::Matrix<double, 2, 8> monomials(double x, double y) {
 /// Two moments along each edge, two inside.
 template <class FormAt>
 Moments moments_of(const FormAt& form) {
-  constexpr double kCorner[3][2] = {{0, 0}, {1, 0}, {0, 1}};
   Moments moments = Moments::Zero();
   for (int e = 0; e < 3; ++e) {
     const double* from = kCorner[e];
@@ -83,7 +84,6 @@ Eigen::Matrix<double, 3, 9> linear_tensors(double x, double y) {
 
 template <class TensorAt>
 Moments9 tensor_moments(const TensorAt& tensor) {
-  constexpr double kCorner[3][2] = {{0, 0}, {1, 0}, {0, 1}};
   Moments9 moments = Moments9::Zero();
   for (int e = 0; e < 3; ++e) {
     const double* from = kCorner[e];
@@ -208,6 +208,26 @@ FacetPoint facet_point(double xi, double eta) {
 const FacetPoint& facet_center() {
   static const FacetPoint center = facet_point(1.0 / 3.0, 1.0 / 3.0);
   return center;
+}
+
+const std::array<std::array<EdgePoint, 3>, 3>& edge_rules() {
+  static const auto rules = [] {
+    std::array<std::array<EdgePoint, 3>, 3> points;
+    const std::vector<GaussPoint> gauss = gauss_rule(3);
+    for (int e = 0; e < 3; ++e) {
+      const double* from = kCorner[e];
+      const double* to = kCorner[(e + 1) % 3];
+      for (int q = 0; q < 3; ++q) {
+        const double s = gauss[q].at;
+        points[e][q] = {facet_functions(from[0] + s * (to[0] - from[0]),
+                                        from[1] + s * (to[1] - from[1])),
+                        gauss[q].weight,
+                        {to[0] - from[0], to[1] - from[1]}};
+      }
+    }
+    return points;
+  }();
+  return rules;
 }
 
 const FacetRule& facet_rule() {

@@ -44,4 +44,13 @@ FacetPoint facet_point(double xi, double eta);
 /// At the center.
 const FacetPoint& facet_center();
 
+/// Three points along each edge (01), (12), (20), weights of its length in the
+/// reference coordinates, `along` from its first corner to its second.
+struct EdgePoint {
+  FacetPoint at;
+  double weight = 0.0;
+  Eigen::Vector2d along;
+};
+const std::array<std::array<EdgePoint, 3>, 3>& edge_rules();
+
 }  // namespace meniscus::shell

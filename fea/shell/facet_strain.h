@@ -115,6 +115,20 @@ FacetFrame<T> facet_frame(const std::array<Triple<T>, kNodes>& X,
   return f;
 }
 
+/// Along a facet's edge: its conormal, out of the facet, times the length over
+/// the reference coordinate's.
+template <class T>
+Triple<T> edge_conormal(const std::array<Triple<T>, kNodes>& X,
+                        const EdgePoint& p) {
+  const FacetFrame<T> frame = facet_frame(X, p.at, nullptr);
+  Triple<T> tangent{};
+  for (int j = 0; j < kNodes; ++j) {
+    const double slope = p.at.slope.row(j).dot(p.along);
+    tangent = plus(tangent, slope, X[j]);
+  }
+  return cross(tangent, frame.axes[2]);
+}
+
 /// Along the frame's axes: [i][j] is component j of the derivative along i.
 template <class T>
 struct FacetStrain {

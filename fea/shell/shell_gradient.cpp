@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "core/math/taped.h"
 #include "core/parallel_for.h"
+#include "fea/shell/facet_loads.h"
 #include "fea/shell/facet_matrices.h"
 
 namespace meniscus::shell {
@@ -102,7 +103,7 @@ Triple<Taped> taped_acceleration(const ShellLoads& loads,
 
 /// What pressures, weight and spin do on v, per area of the surface.
 Taped outer_work(const TapedPoint& at, const ShellLoads& loads,
-                 const WallPressure& pressure, const WholeField& v,
+                 const FacetLoad& own, const WholeField& v,
                  const Triple<Taped>& bubble) {
   Vec3 moved = Vec3::Zero();
   Vec3 turned = Vec3::Zero();
@@ -121,8 +122,8 @@ Taped outer_work(const TapedPoint& at, const ShellLoads& loads,
     const Taped zeta = (place + at.facet.offset) * at.wall.thickness;
     return p * determinant(shifter(at.wall.frame.curvature, zeta));
   };
-  Taped sum = (push(pressure.negative, -0.5) + push(pressure.middle, 0.0) +
-               push(pressure.positive, 0.5)) *
+  Taped sum = (push(own.negative, -0.5) + push(own.middle, 0.0) +
+               push(own.positive, 0.5)) *
               dot(n, u);
   if (has_mass_loads(loads)) {
     const Triple<Taped> arm = cross(theta, n);
@@ -139,6 +140,27 @@ Taped outer_work(const TapedPoint& at, const ShellLoads& loads,
   return sum;
 }
 
+/// What pulls on the facet's edges do on v.
+Taped edge_work(const std::array<Triple<Taped>, kNodes>& X,
+                const FacetLoad& own, const WholeField& v) {
+  Taped sum(0.0);
+  for (int e = 0; e < 3; ++e) {
+    if (own.pull[e] == 0.0) {
+      continue;
+    }
+    for (const EdgePoint& p : edge_rules()[e]) {
+      Vec3 u = Vec3::Zero();
+      for (int i = 0; i < kNodes; ++i) {
+        u += p.at.shape[i] * v.nodes.col(i).head<3>();
+      }
+      sum =
+          sum + own.pull[e] * p.weight *
+                    dot(edge_conormal(X, p), Triple<double>{u[0], u[1], u[2]});
+    }
+  }
+  return sum;
+}
+
 struct FacetGradient {
   double value = 0.0;
   std::array<double, kInputs> by_input = {};
@@ -148,7 +170,7 @@ struct FacetGradient {
 struct FacetResidual {
   const Facet& facet;
   const ShellLoads& loads;
-  const WallPressure& pressure;
+  const FacetLoad& own;
   WholeField v, u;
 };
 
@@ -171,8 +193,8 @@ FacetGradient facet_gradient(const FacetResidual& residual, Tape& tape) {
   };
   const Triple<Taped> of_v = bubble(residual.v);
   const Triple<Taped> of_u = bubble(residual.u);
-  const WallState state = wall_state(residual.loads, residual.pressure);
-  Taped sum(0.0);
+  const WallState state = wall_state(residual.loads, residual.own);
+  Taped sum = edge_work(X, residual.own, residual.v);
   for (const FacetPoint& p : facet_rule()) {
     const Vec3 share = corner_shares(p);
     const TapedPoint at = {
@@ -186,7 +208,7 @@ FacetGradient facet_gradient(const FacetResidual& residual, Tape& tape) {
         inner_work(at, state, facet_strain(X, p, frame, residual.v.nodes, of_v),
                    facet_strain(X, p, frame, residual.u.nodes, of_u));
     const Taped outer =
-        outer_work(at, residual.loads, residual.pressure, residual.v, of_v);
+        outer_work(at, residual.loads, residual.own, residual.v, of_v);
     sum = sum + p.weight * frame.area * (outer - inner);
   }
   FacetGradient result;
@@ -198,7 +220,7 @@ FacetGradient facet_gradient(const FacetResidual& residual, Tape& tape) {
 
 void add_edge_gradient(const ShellMesh& mesh, const EdgeLoad& load,
                        const VectorX& v, ShellGradient& gradient) {
-  for (const EdgePoint& p : edge_points(mesh, load.nodes)) {
+  for (const LinePoint& p : line_points(mesh, load.nodes)) {
     double work = 0.0;  // per length
     for (int k = 0; k < 3; ++k) {
       const auto at = 6L * load.nodes[k];
@@ -229,7 +251,7 @@ ShellGradient residual_gradient(const ShellMesh& mesh,
                     mesh.nodes.size(), v.size(), u.size()));
   }
   const std::vector<LaminateLaw> laws = laminate_laws(sections);
-  const std::vector<WallPressure> pressures = wall_pressures(mesh, loads);
+  const std::vector<FacetLoad> acting = facet_loads(mesh, loads);
   std::vector<FacetGradient> parts(mesh.facets.size());
   parallel_for(
       static_cast<std::ptrdiff_t>(parts.size()), [&](std::ptrdiff_t k) {
@@ -245,8 +267,8 @@ ShellGradient residual_gradient(const ShellMesh& mesh,
                   bubble_rotation(K, forces, own)};
         };
         parts[k] = facet_gradient(
-            {facet, loads, pressures[k], field(v, WholeVector::Zero()),
-             field(u, facet_forces(facet, loads, pressures[k]))},
+            {facet, loads, acting[k], field(v, WholeVector::Zero()),
+             field(u, facet_forces(facet, loads, acting[k]))},
             tape);
       });
   ShellGradient gradient;

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "fea/loads/load_case.h"
-#include "fea/shell/facet_matrices.h"
 #include "fea/shell/shell_mesh.h"
 
 namespace meniscus::shell {
@@ -24,6 +23,14 @@ struct FacetPressure {
   WallSide side = WallSide::Negative;
 };
 
+/// Force per length of an edge of a facet along the edge's conormal, out of the
+/// facet and in its surface, where it is positive.
+struct EdgePull {
+  int facet = 0;
+  int edge = 0;        // 0: (01), 1: (12), 2: (20)
+  double force = 0.0;  // [force/length]
+};
+
 /// Force and moment per length of an edge.
 struct EdgeLoad {
   std::array<int, 3> nodes = {};  // from, to, middle
@@ -39,6 +46,7 @@ struct WallTemperature {
 
 struct ShellLoads {
   std::vector<FacetPressure> pressures;
+  std::vector<EdgePull> pulls;
   std::vector<EdgeLoad> edges;
   Vec3 gravity = Vec3::Zero();  // force per mass [length/time^2]
   std::optional<loads::Spin> spin;
@@ -56,34 +64,14 @@ VectorX nodal_forces(const ShellMesh& mesh,
 /// As nodal_forces() does.
 void check_loads(const ShellMesh& mesh, const ShellLoads& loads);
 
-bool has_mass_loads(const ShellLoads& loads);
-
 /// A point of an edge's rule (three, on [0, 1]).
-struct EdgePoint {
+struct LinePoint {
   double weight;
   std::array<double, 3> shape;
   std::array<double, 3> slope;
   Vec3 tangent;
 };
-std::array<EdgePoint, 3> edge_points(const ShellMesh& mesh,
+std::array<LinePoint, 3> line_points(const ShellMesh& mesh,
                                      const std::array<int, 3>& nodes);
-
-/// All pressures on one facet.
-struct WallPressure {
-  double negative = 0.0;
-  double middle = 0.0;
-  double positive = 0.0;
-};
-/// One per facet. Throws InvalidInput for facets that are not there.
-std::vector<WallPressure> wall_pressures(const ShellMesh& mesh,
-                                         const ShellLoads& loads);
-
-/// Free strains of a facet under the loads.
-WallState wall_state(const ShellLoads& loads, const WallPressure& pressure);
-
-/// What acts on one facet but edges and nodes: consistent, the bubble's moments
-/// last.
-WholeVector facet_forces(const Facet& facet, const ShellLoads& loads,
-                         const WallPressure& pressure);
 
 }  // namespace meniscus::shell

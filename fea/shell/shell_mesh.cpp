@@ -37,11 +37,12 @@ void check_numbers(const ShellMesh& mesh,
       throw MeshError(fmt::format("facet {} of a shell has section {} of {}", f,
                                   mesh.section[f], sections.size()));
     }
-    if (!(mesh.thickness[f].minCoeff() > 0.0)) {
-      throw MeshError(
-          fmt::format("facet {} of a shell has thickness {}; give it one "
-                      "above 0",
-                      f, mesh.thickness[f].minCoeff()));
+    if (!(mesh.thickness[f].array() > 0.0).all() ||
+        !mesh.thickness[f].allFinite()) {
+      throw MeshError(fmt::format(
+          "facet {} of a shell has thicknesses {}, {}, {}; give it "
+          "numbers above 0",
+          f, mesh.thickness[f][0], mesh.thickness[f][1], mesh.thickness[f][2]));
     }
   }
   for (int i = 0; i < nodes; ++i) {

@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "core/parallel_for.h"
+#include "fea/shell/facet_loads.h"
 #include "fea/shell/facet_matrices.h"
 
 namespace meniscus::shell {
@@ -81,11 +82,11 @@ void add(WallStress& sum, double weight, const WallStress& stress) {
 }
 
 FacetStress facet_stress(const Facet& facet, const ShellLoads& loads,
-                         const WallPressure& pressure, const FacetVector& u) {
+                         const FacetLoad& own, const FacetVector& u) {
   const auto X = triples(facet);
-  const Eigen::Vector2d b = bubble_rotation(
-      whole_stiffness(facet), facet_forces(facet, loads, pressure), u);
-  const WallState state = wall_state(loads, pressure);
+  const Eigen::Vector2d b = bubble_rotation(whole_stiffness(facet),
+                                            facet_forces(facet, loads, own), u);
+  const WallState state = wall_state(loads, own);
   const auto axes = bubble_axes(X);
   const Triple<double> bubble = plus(times(b[0], axes[0]), b[1], axes[1]);
   const FacetField field = Eigen::Map<const FacetField>(u.data());
@@ -119,14 +120,13 @@ std::vector<FacetStress> shell_stress(const ShellMesh& mesh,
                     mesh.nodes.size(), displacement.size()));
   }
   const std::vector<LaminateLaw> laws = laminate_laws(sections);
-  const std::vector<WallPressure> pressures = wall_pressures(mesh, loads);
+  const std::vector<FacetLoad> own = facet_loads(mesh, loads);
   std::vector<FacetStress> stress(mesh.facets.size());
   parallel_for(
       static_cast<std::ptrdiff_t>(stress.size()), [&](std::ptrdiff_t k) {
         const int f = static_cast<int>(k);
-        stress[k] =
-            facet_stress(facet_of(mesh, sections, laws, f), loads, pressures[k],
-                         numbers_of(mesh, f, displacement));
+        stress[k] = facet_stress(facet_of(mesh, sections, laws, f), loads,
+                                 own[k], numbers_of(mesh, f, displacement));
       });
   return stress;
 }

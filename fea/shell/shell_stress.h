@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "fea/element/stress_measures.h"
+#include "fea/shell/facet_rule.h"
 #include "fea/shell/shell_loads.h"
 #include "fea/shell/shell_mesh.h"
 

@@ -64,6 +64,7 @@ ShellLoads all_loads(const MappedShell& shell) {
        shell.edges([](double s, double) { return s > 1.0 - 1e-9; })) {
     loads.edges.push_back({edge, {1.0, -2.0, 0.5}, {0.2, 0.1, -0.3}});
   }
+  loads.pulls = {{1, 0, 2.0}, {2, 1, -3.0}, {2, 2, 1.0}};
   loads.gravity = {0.5, 3.0, -9.0};
   loads.spin = loads::Spin{{0.2, -0.1, 0.3}, {1.0, 2.0, 3.0}, 1.7};
   loads.temperature = WallTemperature{.mean = 30.0, .across = 12.0};
@@ -120,7 +121,7 @@ TEST(ShellGradient, OfResidualsMeetsDifferences) {
   }
   {
     SCOPED_TRACE("edges");
-    expect_residual({.edges = all.edges});
+    expect_residual({.pulls = all.pulls, .edges = all.edges});
   }
   {
     SCOPED_TRACE("weight and spin");

@@ -287,6 +287,9 @@ TEST(ShellLoads, RefusesWhatIsNotThere) {
   loads.pressures = {{1000, 1.0}};
   EXPECT_THROW(strip.solve(loads), InvalidInput);
   loads = {};
+  loads.pulls = {{0, 3, 1.0}};
+  EXPECT_THROW(strip.solve(loads), InvalidInput);
+  loads = {};
   loads.edges = {{{0, 1, -1}}};
   EXPECT_THROW(strip.solve(loads), InvalidInput);
   loads = {};

@@ -210,6 +210,32 @@ TEST(ShellSystem, ReactionsBalanceTheLoads) {
       1.0, 1e-9);
 }
 
+/// Corners in any order, normals either way: the same wall.
+TEST(ShellSystem, FacetsMayBeNumberedAnyWay) {
+  const MappedShell shell = barrel();
+  const std::vector<Section> sections = {isotropic(kYoung, 0.3)};
+  std::vector<NodeSupport> supports;
+  hold(supports, shell.nodes([](double s, double) { return s < 1e-9; }),
+       "xyzabc");
+  ShellLoads loads;
+  loads.nodal = VectorX::LinSpaced(
+      static_cast<Eigen::Index>(6 * shell.mesh.nodes.size()), -1.0, 2.0);
+  ShellMesh turned = shell.mesh;
+  for (std::size_t f = 0; f < turned.facets.size(); ++f) {
+    auto& n = turned.facets[f];
+    if (f % 3 == 1) {
+      n = {n[1], n[2], n[0], n[4], n[5], n[3]};
+    } else if (f % 3 == 2) {
+      n = {n[1], n[0], n[2], n[3], n[5], n[4]};
+    }
+  }
+  const VectorX one =
+      ShellSystem(shell.mesh, sections, supports).solve(loads).displacement;
+  const VectorX other =
+      ShellSystem(turned, sections, supports).solve(loads).displacement;
+  EXPECT_LT((one - other).norm(), 1e-9 * one.norm());
+}
+
 TEST(ShellSystem, SameBitsForAnyNumberOfThreads) {
   const MappedShell shell = barrel();
   const std::vector<Section> sections = {isotropic(kYoung, 0.3, 4.0)};
@@ -275,6 +301,10 @@ TEST(ShellMesh, RefusesWhatIsNoShell) {
     }
   };
   refused([](ShellMesh& m) { m.thickness[1][2] = 0.0; }, "thickness", sections);
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  refused([](ShellMesh& m) { m.thickness[0][1] = kNone; }, "thickness",
+          sections);
+  refused([](ShellMesh& m) { m.nodes[2][1] = kNone; }, "folded", sections);
   refused([](ShellMesh& m) { m.facets[0][4] = 99; }, "node 99", sections);
   refused([](ShellMesh& m) { m.section[1] = 1; }, "section 1", sections);
   refused([](ShellMesh& m) { m.nodes.emplace_back(0, 0, 0); }, "no facet",
