@@ -4,6 +4,8 @@
 
 #include "core/error.h"
 #include "core/parallel_for.h"
+#include "fea/shell/facet_geometric.h"
+#include "fea/shell/facet_loads.h"
 
 namespace meniscus::shell {
 
@@ -78,6 +80,15 @@ ShellSolution ShellSystem::solve(const ShellLoads& loads) const {
 VectorX ShellSystem::solve_forces(const VectorX& forces) const {
   return freedom_.expand(factor_->solve(freedom_.restrict(forces))) -
          freedom_.held_values();
+}
+
+SparseMatrix ShellSystem::geometric(const ShellLoads& loads,
+                                    const VectorX& displacement) const {
+  const std::vector<FacetLoad> own = facet_loads(mesh_, loads);
+  return assembly_.sum([&](int facet) {
+    return facet_geometric(facet_of(mesh_, sections_, laws_, facet), loads,
+                           own[facet], numbers_of(mesh_, facet, displacement));
+  });
 }
 
 SparseMatrix ShellSystem::mass() const {

@@ -42,6 +42,11 @@ class ShellSystem {
   const SymmetricFactor& factor() const { return *factor_; }
   /// Mass on the same unknowns.
   SparseMatrix mass() const;
+  /// Geometric stiffness (facet_geometric.h) of a solution under its loads, on
+  /// the same unknowns: K x = -lambda K_g x at the factor lambda of the loads
+  /// under which the shell buckles.
+  SparseMatrix geometric(const ShellLoads& loads,
+                         const VectorX& displacement) const;
 
  private:
   VectorX stiffness_times(const VectorX& u) const;

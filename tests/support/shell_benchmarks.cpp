@@ -384,6 +384,40 @@ double free_cylinder_energy(double thickness, const GridOptions& options,
          std::pow(thickness, 3);
 }
 
+namespace {
+
+/// The largest theta of A x = theta K x, descending, by subspace iteration
+/// (Bathe 1971); lower triangles.
+VectorX largest(const SparseMatrix& A, const SparseMatrix& K,
+                const SymmetricFactor& factor, int count) {
+  const int block = 2 * count + 8;
+  const auto a = A.selfadjointView<Eigen::Lower>();
+  const auto k = K.selfadjointView<Eigen::Lower>();
+  Eigen::MatrixXd X = Eigen::MatrixXd::Random(A.rows(), block);
+  VectorX theta;
+  for (int round = 0; round < 60; ++round) {
+    const Eigen::MatrixXd AX = a * X;
+    X = factor.solve(AX);
+    const Eigen::MatrixXd small_A = X.transpose() * (a * X);
+    const Eigen::MatrixXd small_K = X.transpose() * (k * X);
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> small(
+        0.5 * (small_A + small_A.transpose()),
+        0.5 * (small_K + small_K.transpose()));
+    X = X * small.eigenvectors();
+    const VectorX now = small.eigenvalues().reverse().head(count);
+    const bool done =
+        theta.size() == count &&
+        (now - theta).cwiseAbs().cwiseQuotient(now).maxCoeff() < 1e-10;
+    theta = now;
+    if (done) {
+      break;
+    }
+  }
+  return theta;
+}
+
+}  // namespace
+
 VectorX frequencies(const ShellMesh& mesh, const std::vector<Section>& sections,
                     const std::vector<NodeSupport>& supports, int count,
                     double shift) {
@@ -400,28 +434,16 @@ VectorX frequencies(const ShellMesh& mesh, const std::vector<Section>& sections,
   if (!factor.factorize(K)) {
     return {};
   }
-  // Subspace iteration (Bathe 1971) on M x = theta (K + shift M) x.
-  const int block = 2 * count + 8;
-  Eigen::MatrixXd X = Eigen::MatrixXd::Random(freedom.unknowns(), block);
-  VectorX theta;
-  for (int round = 0; round < 40; ++round) {
-    const Eigen::MatrixXd MX = M.selfadjointView<Eigen::Lower>() * X;
-    X = factor.solve(MX);
-    const Eigen::MatrixXd MX2 = M.selfadjointView<Eigen::Lower>() * X;
-    const Eigen::MatrixXd own = X.transpose() * MX;
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> small(
-        X.transpose() * MX2, 0.5 * (own + own.transpose()));
-    X = X * small.eigenvectors();
-    const VectorX now = small.eigenvalues().reverse().head(count);
-    const bool done =
-        theta.size() == count &&
-        (now - theta).cwiseAbs().cwiseQuotient(now).maxCoeff() < 1e-10;
-    theta = now;
-    if (done) {
-      break;
-    }
-  }
+  const VectorX theta = largest(M, K, factor, count);
   return ((theta.cwiseInverse().array() - shift).max(0.0)).sqrt() / (2.0 * kPi);
+}
+
+VectorX buckling_factors(const ShellSystem& system, const ShellLoads& loads,
+                         int count) {
+  const SparseMatrix K_g =
+      -system.geometric(loads, system.solve(loads).displacement);
+  return largest(K_g, system.stiffness(), system.factor(), count)
+      .cwiseInverse();
 }
 
 }  // namespace meniscus::shell_benchmarks

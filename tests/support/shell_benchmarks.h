@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "fea/shell/facet_rule.h"
+#include "fea/shell/shell_system.h"
 #include "tests/support/shell_shapes.h"
 
 namespace meniscus::shell_benchmarks {
@@ -60,5 +61,9 @@ VectorX frequencies(const shell::ShellMesh& mesh,
                     const std::vector<shell::Section>& sections,
                     const std::vector<shell::NodeSupport>& supports, int count,
                     double shift);
+
+/// The least factors of a system's loads under which it buckles, ascending.
+VectorX buckling_factors(const shell::ShellSystem& system,
+                         const shell::ShellLoads& loads, int count);
 
 }  // namespace meniscus::shell_benchmarks

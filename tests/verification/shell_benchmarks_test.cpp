@@ -286,6 +286,82 @@ TEST(ShellBenchmarks, FrequenciesOfCylinders) {
   }
 }
 
+/// Supported rectangles pressed along x: k pi^2 D / b^2 with k of the best
+/// number of waves (Timoshenko and Gere 1961), thin plates.
+TEST(ShellBenchmarks, PlatesBuckle) {
+  constexpr double kThinPlate = 5e-3;
+  std::mt19937 random(9);
+  std::uniform_real_distribution<double> number(0.7, 1.4);
+  for (int draw = 0; draw < 3; ++draw) {
+    const double a = 1.6 * number(random);
+    const double b = number(random);
+    const double t = 0.01 * number(random);
+    const MappedShell plate = shell_shapes::mapped_shell(
+        [=](double s, double r) -> Vec3 {
+          return {a * s, b * r, 0.0};
+        },
+        t, {.m = 12, .n = 8, .cut = Cut::Mixed, .shake = 0.15});
+    std::vector<shell::NodeSupport> supports;
+    const auto end = [](double s) { return s < 1e-9 || s > 1 - 1e-9; };
+    hold(supports, plate.nodes([&](double s, double) { return end(s); }), "za");
+    hold(supports, plate.nodes([&](double, double r) { return end(r); }), "zb");
+    hold(supports, plate.nodes([](double s, double) { return s < 1e-9; }), "x");
+    hold(supports, {plate.node(0, 0)}, "y");
+    shell::ShellLoads loads;
+    for (const auto& e :
+         plate.edges([](double s, double) { return s > 1 - 1e-9; })) {
+      loads.edges.push_back({e, {-1.0, 0, 0}});
+    }
+    const std::vector<shell::Section> sections = {isotropic(1e4, 0.3)};
+    const shell::ShellSystem system(plate.mesh, sections, supports);
+    double k = 1e9;
+    for (int m = 1; m < 6; ++m) {
+      k = std::min(k, std::pow(m * b / a + a / (m * b), 2));
+    }
+    const double exact =
+        k * kPi * kPi * 1e4 * t * t * t / (12.0 * 0.91) / (b * b);
+    const double found = buckling_factors(system, loads, 2)[0];
+    std::cout << fmt::format("plate {:.3f} x {:.3f}: {:.5g} of {:.5g}\n", a, b,
+                             found, exact);
+    EXPECT_NEAR(found / exact, 1.0, kThinPlate);
+  }
+}
+
+/// A cylinder pressed along its axis: E t / (R sqrt(3 (1 - nu^2))), 0.577 E t /
+/// R without contraction.
+TEST(ShellBenchmarks, CylindersBuckle) {
+  constexpr double kClassical = 0.02;  // waves of the quarter, of n even
+  const double R = 1.0;
+  const double L = 1.0;
+  const double t = 0.01;
+  const MappedShell shell = shell_shapes::mapped_shell(
+      [=](double s, double r) -> Vec3 {
+        const double a = 0.5 * kPi * s;
+        return {R * std::cos(a), R * std::sin(a), L * r};
+      },
+      t, {.m = 24, .n = 20, .cut = Cut::Mixed});
+  std::vector<shell::NodeSupport> supports;
+  hold(supports, shell.nodes([](double s, double) { return s < 1e-9; }), "yac");
+  hold(supports, shell.nodes([](double s, double) { return s > 1 - 1e-9; }),
+       "xbc");
+  // Without contraction the stress before buckling is even.
+  hold(supports,
+       shell.nodes([](double, double r) { return r < 1e-9 || r > 1 - 1e-9; }),
+       "xyc");
+  hold(supports, shell.nodes([](double, double r) { return r < 1e-9; }), "z");
+  shell::ShellLoads loads;
+  for (const auto& e :
+       shell.edges([](double, double r) { return r > 1 - 1e-9; })) {
+    loads.edges.push_back({e, {0, 0, -1.0}});
+  }
+  const std::vector<shell::Section> sections = {isotropic(1e4, 0.0)};
+  const shell::ShellSystem system(shell.mesh, sections, supports);
+  const double exact = 1e4 * t * t / R / std::sqrt(3.0);
+  const double found = buckling_factors(system, loads, 4)[0];
+  std::cout << fmt::format("cylinder: {:.5g} of {:.5g}\n", found, exact);
+  EXPECT_NEAR(found / exact, 1.0, kClassical);
+}
+
 /// A quarter of a ring pulled apart, of ten-node elements and of facets: the
 /// difference falls with t / R.
 TEST(ShellBenchmarks, RingsDeflectAsSolidsDo) {
