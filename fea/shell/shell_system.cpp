@@ -6,6 +6,7 @@
 #include "core/parallel_for.h"
 #include "fea/shell/facet_geometric.h"
 #include "fea/shell/facet_loads.h"
+#include "fea/shell/shell_held.h"
 
 namespace meniscus::shell {
 
@@ -33,12 +34,12 @@ ShellSystem::ShellSystem(const ShellMesh& mesh,
         return condensed(
             whole_stiffness(facet_of(mesh_, sections_, laws_, facet), rule_));
       })) {
+  check_held(mesh_, freedom_);
   factor_.emplace(K_, FactorKind::Cholesky, assembly_.elimination_order());
   if (!factor_->factorize(K_)) {
     throw SolverError(fmt::format(
         "the stiffness matrix of a shell of {} unknowns is not positive "
-        "definite: the shell or a piece of it is free to move or turn; hold "
-        "more of it",
+        "definite: facets are nearly without area, or thicknesses far apart",
         freedom_.unknowns()));
   }
 }

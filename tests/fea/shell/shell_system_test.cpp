@@ -316,12 +316,38 @@ TEST(ShellMesh, RefusesWhatIsNoShell) {
   refused([](ShellMesh&) {}, "direction", across);
 }
 
+void expect_free(const ShellMesh& mesh,
+                 const std::vector<NodeSupport>& supports, const char* motion) {
+  const std::vector<Section> sections = {isotropic(kYoung, 0.3)};
+  try {
+    const ShellSystem system(mesh, sections, supports);
+    ADD_FAILURE() << motion;
+  } catch (const SolverError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr(motion));
+  }
+}
+
 TEST(ShellSystem, RefusesWhatIsFreeToMove) {
   const MappedShell shell = barrel();
   const std::vector<Section> sections = {isotropic(kYoung, 0.3)};
+  const auto side = shell.nodes([](double s, double) { return s < 1e-9; });
   std::vector<NodeSupport> supports;
-  hold(supports, shell.nodes([](double s, double) { return s < 1e-9; }), "xy");
-  EXPECT_THROW(ShellSystem(shell.mesh, sections, supports), SolverError);
+  hold(supports, side, "xyc");
+  expect_free(shell.mesh, supports, "move along");
+  supports.clear();
+  hold(supports, side, "xyz");  // a hinge along z
+  expect_free(shell.mesh, supports, "turn about");
+  expect_free(shell.mesh, {}, "free to");
+  // A piece for itself, beside one that is held.
+  const MappedShell two = shell_shapes::joined(
+      rectangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 0.1, 2, 2),
+      rectangle({0, 0, 1}, {1, 0, 0}, {0, 1, 0}, 0.1, 2, 2));
+  supports.clear();
+  hold(supports,
+       nodes_where(two.mesh,
+                   [](const Vec3& x) { return x[0] < 1e-9 && x[2] < 0.5; }),
+       "xyzabc");
+  expect_free(two.mesh, supports, "around (0.5, 0.5, 1)");
   supports = {{.node = 1000}};
   EXPECT_THROW(ShellSystem(shell.mesh, sections, supports), InvalidInput);
   supports = {{.node = 1, .held = {true}, .value = Six::Ones()},
