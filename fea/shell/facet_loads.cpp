@@ -1,0 +1,163 @@
+#include "fea/shell/facet_loads.h"
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+#include "core/error.h"
+
+namespace meniscus::shell {
+
+namespace {
+
+/// Force per mass at a place.
+Vec3 acceleration(const ShellLoads& loads, const Vec3& x) {
+  Vec3 a = loads.gravity;
+  if (loads.spin) {
+    const Vec3 axis = loads.spin->axis.normalized();
+    const Vec3 arm = x - loads.spin->point;
+    a += loads.spin->rate * loads.spin->rate * (arm - axis.dot(arm) * axis);
+  }
+  return a;
+}
+
+/// Mass times acceleration; the latter is linear in the place.
+WholeVector mass_forces(const Facet& facet, const ShellLoads& loads) {
+  const auto X = triples(facet);
+  const auto bubble = bubble_axes(X);
+  WholeVector f = WholeVector::Zero();
+  for (const FacetPoint& p : facet_rule()) {
+    const FacetFrame<double> frame = facet_frame(X, p, facet.direction);
+    const auto m = wall_moments(facet, frame, thickness_at(facet, p));
+    Vec3 x = Vec3::Zero();
+    for (int i = 0; i < kNodes; ++i) {
+      x += p.shape[i] * facet.nodes[i];
+    }
+    const Vec3 n = as_vector(frame.axes[2]);
+    const Vec3 here = acceleration(loads, x);
+    const Vec3 slope = acceleration(loads, x + n) - here;
+    const double area = p.weight * frame.area;
+    const Vec3 force = area * (m[0] * here + m[1] * slope);
+    const Vec3 moment = area * n.cross(m[1] * here + m[2] * slope);
+    for (int i = 0; i < kNodes; ++i) {
+      f.segment<3>(6 * i) += p.shape[i] * force;
+      f.segment<3>(6 * i + 3) += p.shape[i] * moment;
+    }
+    for (int k = 0; k < 2; ++k) {
+      f[kUnknowns + k] += p.shape[kNodes] * as_vector(bubble[k]).dot(moment);
+    }
+  }
+  return f;
+}
+
+/// What the pressures push along the normal.
+WholeVector pressure_forces(const Facet& facet, const FacetLoad& load) {
+  const auto X = triples(facet);
+  WholeVector f = WholeVector::Zero();
+  for (const FacetPoint& p : facet_rule()) {
+    const FacetFrame<double> frame = facet_frame(X, p, facet.direction);
+    const double t = thickness_at(facet, p);
+    const auto push = [&](double pressure, double at) {
+      const double zeta = (at + facet.offset) * t;
+      return pressure * determinant(shifter(frame.curvature, zeta));
+    };
+    const double sum = push(load.negative, -0.5) + push(load.middle, 0.0) +
+                       push(load.positive, 0.5);
+    const Vec3 force = p.weight * frame.area * sum * as_vector(frame.axes[2]);
+    for (int i = 0; i < kNodes; ++i) {
+      f.segment<3>(6 * i) += p.shape[i] * force;
+    }
+  }
+  return f;
+}
+
+/// What pulls on its edges.
+WholeVector pull_forces(const Facet& facet, const FacetLoad& load) {
+  const auto X = triples(facet);
+  WholeVector f = WholeVector::Zero();
+  for (int e = 0; e < 3; ++e) {
+    for (const EdgePoint& p : edge_rules()[e]) {
+      const Vec3 force =
+          load.pull[e] * p.weight * as_vector(edge_conormal(X, p));
+      for (int i = 0; i < kNodes; ++i) {
+        f.segment<3>(6 * i) += p.at.shape[i] * force;
+      }
+    }
+  }
+  return f;
+}
+
+}  // namespace
+
+bool has_mass_loads(const ShellLoads& loads) {
+  return loads.spin.has_value() || loads.gravity != Vec3::Zero();
+}
+
+bool FacetLoad::presses() const {
+  return negative != 0.0 || middle != 0.0 || positive != 0.0;
+}
+
+bool FacetLoad::pulls() const { return pull != std::array<double, 3>{}; }
+
+std::vector<FacetLoad> facet_loads(const ShellMesh& mesh,
+                                   const ShellLoads& loads) {
+  std::vector<FacetLoad> sums(mesh.facets.size());
+  const int facets = static_cast<int>(mesh.facets.size());
+  for (const FacetPressure& load : loads.pressures) {
+    if (load.facet < 0 || load.facet >= facets) {
+      throw InvalidInput(
+          fmt::format("a pressure acts on facet {} of {}", load.facet, facets));
+    }
+    FacetLoad& sum = sums[load.facet];
+    switch (load.side) {
+      case WallSide::Negative:
+        sum.negative += load.pressure;
+        break;
+      case WallSide::Middle:
+        sum.middle += load.pressure;
+        break;
+      case WallSide::Positive:
+        sum.positive += load.pressure;
+        break;
+    }
+  }
+  for (const EdgePull& load : loads.pulls) {
+    if (load.facet < 0 || load.facet >= facets || load.edge < 0 ||
+        load.edge > 2) {
+      throw InvalidInput(fmt::format("a pull acts on edge {} of facet {} of {}",
+                                     load.edge, load.facet, facets));
+    }
+    sums[load.facet].pull[load.edge] += load.force;
+  }
+  return sums;
+}
+
+WallState wall_state(const ShellLoads& loads, const FacetLoad& own) {
+  WallState state;
+  if (loads.temperature) {
+    state.temperature = loads.temperature->mean;
+    state.temperature_across = loads.temperature->across;
+  }
+  state.stress_negative = -own.negative;
+  state.stress_positive = own.positive;
+  return state;
+}
+
+WholeVector facet_forces(const Facet& facet, const ShellLoads& loads,
+                         const FacetLoad& own) {
+  WholeVector f = WholeVector::Zero();
+  if (has_mass_loads(loads)) {
+    f += mass_forces(facet, loads);
+  }
+  if (own.presses()) {
+    f += pressure_forces(facet, own);
+  }
+  if (own.pulls()) {
+    f += pull_forces(facet, own);
+  }
+  if (loads.temperature || own.presses()) {
+    f += holding_forces(facet, wall_state(loads, own));
+  }
+  return f;
+}
+
+}  // namespace meniscus::shell

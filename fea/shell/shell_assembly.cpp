@@ -1,0 +1,161 @@
+#include "fea/shell/shell_assembly.h"
+
+#include <algorithm>
+
+#include "core/parallel_for.h"
+
+namespace meniscus::shell {
+
+namespace {
+
+/// Facets whose matrices are held at once.
+constexpr int kBatch = 1024;
+
+/// Facets at each node, one list after the other.
+struct NodeFacets {
+  std::vector<int> start;
+  std::vector<int> facet;
+};
+
+NodeFacets node_facets(const ShellMesh& mesh) {
+  NodeFacets list;
+  list.start.assign(mesh.nodes.size() + 1, 0);
+  for (const auto& nodes : mesh.facets) {
+    for (const int node : nodes) {
+      ++list.start[node + 1];
+    }
+  }
+  for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {
+    list.start[i + 1] += list.start[i];
+  }
+  list.facet.resize(list.start.back());
+  std::vector<int> next(list.start.begin(), list.start.end() - 1);
+  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+    for (const int node : mesh.facets[f]) {
+      list.facet[next[node]++] = static_cast<int>(f);
+    }
+  }
+  return list;
+}
+
+}  // namespace
+
+ShellAssembly::ShellAssembly(const ShellMesh& mesh, const ShellFreedom& freedom)
+    : mesh_(mesh), freedom_(freedom) {
+  const NodeFacets list = node_facets(mesh);
+  const int nodes = static_cast<int>(mesh.nodes.size());
+  start_.assign(1, 0);
+  std::vector<int> rows;
+  for (int j = 0; j < nodes; ++j) {
+    rows.clear();
+    for (int k = list.start[j]; k < list.start[j + 1]; ++k) {
+      for (const int i : mesh.facets[list.facet[k]]) {
+        if (i >= j) {
+          rows.push_back(i);
+        }
+      }
+    }
+    std::sort(rows.begin(), rows.end());
+    rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
+    int place = 0;
+    for (const int i : rows) {
+      row_.push_back(i);
+      place_.push_back(place);
+      place += freedom.free_count(i);
+    }
+    start_.push_back(static_cast<int>(row_.size()));
+  }
+}
+
+SparseMatrix ShellAssembly::sum(const MatrixOfFacet& matrix) const {
+  const int n = freedom_.unknowns();
+  const int nodes = freedom_.nodes();
+  SparseMatrix A(n, n);
+  int* outer = A.outerIndexPtr();
+  outer[0] = 0;
+  for (int j = 0; j < nodes; ++j) {
+    const int last = start_[j + 1] - 1;
+    const int height = place_[last] + freedom_.free_count(row_[last]);
+    for (int c = 0; c < freedom_.free_count(j); ++c) {
+      const int column = freedom_.first_unknown(j) + c;
+      outer[column + 1] = outer[column] + height;
+    }
+  }
+  A.resizeNonZeros(outer[n]);
+  for (int j = 0; j < nodes; ++j) {
+    for (int c = 0; c < freedom_.free_count(j); ++c) {
+      int at = outer[freedom_.first_unknown(j) + c];
+      for (int b = start_[j]; b < start_[j + 1]; ++b) {
+        for (int r = 0; r < freedom_.free_count(row_[b]); ++r) {
+          A.innerIndexPtr()[at++] = freedom_.first_unknown(row_[b]) + r;
+        }
+      }
+    }
+  }
+  std::fill(A.valuePtr(), A.valuePtr() + outer[n], 0.0);
+  const int facets = static_cast<int>(mesh_.facets.size());
+  std::vector<FacetMatrix> batch(std::min(kBatch, facets));
+  for (int first = 0; first < facets; first += kBatch) {
+    const int count = std::min(kBatch, facets - first);
+    parallel_for(count, [&](std::ptrdiff_t k) {
+      batch[k] = matrix(first + static_cast<int>(k));
+    });
+    for (int k = 0; k < count; ++k) {
+      add(first + k, batch[k], A);
+    }
+  }
+  return A;
+}
+
+void ShellAssembly::add(int facet, const FacetMatrix& K,
+                        SparseMatrix& sum) const {
+  const auto& nodes = mesh_.facets[facet];
+  for (int b = 0; b < kNodes; ++b) {
+    const int j = nodes[b];
+    const int columns = freedom_.free_count(j);
+    for (int a = 0; a < kNodes; ++a) {
+      const int i = nodes[a];
+      if (i < j) {
+        continue;
+      }
+      const auto at = std::lower_bound(row_.begin() + start_[j],
+                                       row_.begin() + start_[j + 1], i);
+      const int place = place_[at - row_.begin()];
+      Eigen::Matrix<double, 6, 6> block = K.block<6, 6>(6 * a, 6 * b);
+      const int rows = freedom_.free_count(i);
+      if (!freedom_.is_plain(i)) {
+        block.topRows(rows) = (freedom_.basis(i).transpose() * block).eval();
+      }
+      if (!freedom_.is_plain(j)) {
+        block.leftCols(columns) = (block * freedom_.basis(j)).eval();
+      }
+      for (int c = 0; c < columns; ++c) {
+        double* value = sum.valuePtr() +
+                        sum.outerIndexPtr()[freedom_.first_unknown(j) + c] +
+                        place;
+        for (int r = 0; r < rows; ++r) {
+          value[r] += block(r, c);
+        }
+      }
+    }
+  }
+}
+
+std::vector<int> ShellAssembly::elimination_order() const {
+  const int nodes = freedom_.nodes();
+  SparseMatrix graph(nodes, nodes);
+  std::copy(start_.begin(), start_.end(), graph.outerIndexPtr());
+  graph.resizeNonZeros(start_.back());
+  std::copy(row_.begin(), row_.end(), graph.innerIndexPtr());
+  std::fill(graph.valuePtr(), graph.valuePtr() + start_.back(), 1.0);
+  std::vector<int> order;
+  order.reserve(freedom_.unknowns());
+  for (const int node : nested_dissection(graph)) {
+    for (int k = 0; k < freedom_.free_count(node); ++k) {
+      order.push_back(freedom_.first_unknown(node) + k);
+    }
+  }
+  return order;
+}
+
+}  // namespace meniscus::shell

@@ -1,0 +1,294 @@
+#include "fea/shell/shell_gradient.h"
+
+#include <array>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "core/math/taped.h"
+#include "core/parallel_for.h"
+#include "fea/shell/facet_loads.h"
+#include "fea/shell/facet_matrices.h"
+
+namespace meniscus::shell {
+
+namespace {
+
+constexpr int kInputs = 3 * kNodes + 3;  // nodes' places, thicknesses
+
+/// One of the two fields, with its bubble.
+struct WholeField {
+  FacetField nodes;
+  Eigen::Vector2d bubble;
+};
+
+struct TapedWall {
+  FacetFrame<Taped> frame;
+  Taped thickness;
+};
+
+/// All that one point of a facet needs.
+struct TapedPoint {
+  const Facet& facet;
+  const FacetPoint& point;
+  const std::array<Triple<Taped>, kNodes>& X;
+  TapedWall wall;
+};
+
+/// visit(zeta, weight, inverse of the shifter, layer) through the thickness,
+/// the weight per area of the surface.
+template <class Visit>
+void for_each_taped_layer(const TapedPoint& at, const Visit& visit) {
+  for (const LayerPoint& layer : at.facet.law->points) {
+    const Taped zeta = (layer.at + at.facet.offset) * at.wall.thickness;
+    const Square<Taped> shift = shifter(at.wall.frame.curvature, zeta);
+    visit(zeta, layer.weight * at.wall.thickness * determinant(shift),
+          inverse(shift), layer);
+  }
+}
+
+/// a . Q b.
+template <class B>
+Taped product(const Triple<Taped>& a, const Mat3& Q, const B& b) {
+  Taped sum(0.0);
+  for (int i = 0; i < 3; ++i) {
+    sum = sum + a[i] * (Q(i, 0) * b[0] + Q(i, 1) * b[1] + Q(i, 2) * b[2]);
+  }
+  return sum;
+}
+
+/// v (H u - free stresses) per area of the surface.
+Taped inner_work(const TapedPoint& at, const WallState& state,
+                 const FacetStrain<Taped>& v, const FacetStrain<Taped>& u) {
+  const LaminateLaw& law = *at.facet.law;
+  Taped sum(0.0);
+  for_each_taped_layer(
+      at, [&](const Taped& zeta, const Taped& weight, const Square<Taped>& back,
+              const LayerPoint& layer) {
+        const LayerStrain<Taped> a = layer_strain(v, back, zeta);
+        const LayerStrain<Taped> b = layer_strain(u, back, zeta);
+        const PlyLaw& ply = law.plies[layer.ply];
+        const Vec3 free = state.free_strain(ply, layer.at);
+        Taped density =
+            product(a.plane, ply.plane,
+                    Triple<Taped>{b.plane[0] - free[0], b.plane[1] - free[1],
+                                  b.plane[2] - free[2]});
+        for (int i = 0; i < 2; ++i) {
+          density = density + law.shear_correction * a.across[i] *
+                                  (ply.across(i, 0) * b.across[0] +
+                                   ply.across(i, 1) * b.across[1]);
+        }
+        sum = sum + weight * density;
+      });
+  const Taped skew =
+      (v.stretch[0][1] - v.stretch[1][0]) * (u.stretch[0][1] - u.stretch[1][0]);
+  return sum + kDrilling * law.mean_shear * at.wall.thickness * skew;
+}
+
+/// Force per mass at a place.
+Triple<Taped> taped_acceleration(const ShellLoads& loads,
+                                 const Triple<Taped>& x) {
+  const Vec3& g = loads.gravity;
+  Triple<Taped> a = {Taped(g[0]), Taped(g[1]), Taped(g[2])};
+  if (loads.spin) {
+    const Vec3 unit = loads.spin->axis.normalized();
+    const Vec3& o = loads.spin->point;
+    const Triple<double> axis = {unit[0], unit[1], unit[2]};
+    const Triple<Taped> arm = {x[0] - o[0], x[1] - o[1], x[2] - o[2]};
+    const Triple<Taped> out = plus(arm, -dot(arm, axis), axis);
+    a = plus(a, loads.spin->rate * loads.spin->rate, out);
+  }
+  return a;
+}
+
+/// What pressures, weight and spin do on v, per area of the surface.
+Taped outer_work(const TapedPoint& at, const ShellLoads& loads,
+                 const FacetLoad& own, const WholeField& v,
+                 const Triple<Taped>& bubble) {
+  Vec3 moved = Vec3::Zero();
+  Vec3 turned = Vec3::Zero();
+  Triple<Taped> x{};
+  for (int i = 0; i < kNodes; ++i) {
+    moved += at.point.shape[i] * v.nodes.col(i).head<3>();
+    turned += at.point.shape[i] * v.nodes.col(i).tail<3>();
+    x = plus(x, at.point.shape[i], at.X[i]);
+  }
+  const Triple<double> u = {moved[0], moved[1], moved[2]};
+  const Triple<double> nodal = {turned[0], turned[1], turned[2]};
+  const Triple<Taped> theta =
+      plus(times(at.point.shape[kNodes], bubble), 1.0, nodal);
+  const Triple<Taped>& n = at.wall.frame.axes[2];
+  const auto push = [&](double p, double place) {
+    const Taped zeta = (place + at.facet.offset) * at.wall.thickness;
+    return p * determinant(shifter(at.wall.frame.curvature, zeta));
+  };
+  Taped sum = (push(own.negative, -0.5) + push(own.middle, 0.0) +
+               push(own.positive, 0.5)) *
+              dot(n, u);
+  if (has_mass_loads(loads)) {
+    const Triple<Taped> arm = cross(theta, n);
+    for_each_taped_layer(
+        at, [&](const Taped& zeta, const Taped& weight, const Square<Taped>&,
+                const LayerPoint& layer) {
+          const double density = at.facet.law->plies[layer.ply].density;
+          const Triple<Taped> there = plus(x, zeta, n);
+          const Triple<Taped> motion = plus(times(zeta, arm), 1.0, u);
+          sum = sum + density * weight *
+                          dot(motion, taped_acceleration(loads, there));
+        });
+  }
+  return sum;
+}
+
+/// What pulls on the facet's edges do on v.
+Taped edge_work(const std::array<Triple<Taped>, kNodes>& X,
+                const FacetLoad& own, const WholeField& v) {
+  Taped sum(0.0);
+  for (int e = 0; e < 3; ++e) {
+    if (own.pull[e] == 0.0) {
+      continue;
+    }
+    for (const EdgePoint& p : edge_rules()[e]) {
+      Vec3 u = Vec3::Zero();
+      for (int i = 0; i < kNodes; ++i) {
+        u += p.at.shape[i] * v.nodes.col(i).head<3>();
+      }
+      sum =
+          sum + own.pull[e] * p.weight *
+                    dot(edge_conormal(X, p), Triple<double>{u[0], u[1], u[2]});
+    }
+  }
+  return sum;
+}
+
+struct FacetGradient {
+  double value = 0.0;
+  std::array<double, kInputs> by_input = {};
+};
+
+/// The state equation's data and the two fields of one facet.
+struct FacetResidual {
+  const Facet& facet;
+  const ShellLoads& loads;
+  const FacetLoad& own;
+  WholeField v, u;
+};
+
+FacetGradient facet_gradient(const FacetResidual& residual, Tape& tape) {
+  const Facet& facet = residual.facet;
+  tape.clear();
+  std::array<Triple<Taped>, kNodes> X;
+  for (int i = 0; i < kNodes; ++i) {
+    for (int c = 0; c < 3; ++c) {
+      X[i][c] = tape.input(facet.nodes[i][c], 0.0);
+    }
+  }
+  std::array<Taped, 3> t;
+  for (int c = 0; c < 3; ++c) {
+    t[c] = tape.input(facet.thickness[c], 0.0);
+  }
+  const auto axes = bubble_axes(X);
+  const auto bubble = [&](const WholeField& field) {
+    return plus(times(field.bubble[0], axes[0]), field.bubble[1], axes[1]);
+  };
+  const Triple<Taped> of_v = bubble(residual.v);
+  const Triple<Taped> of_u = bubble(residual.u);
+  const WallState state = wall_state(residual.loads, residual.own);
+  Taped sum = edge_work(X, residual.own, residual.v);
+  for (const FacetPoint& p : facet_rule()) {
+    const Vec3 share = corner_shares(p);
+    const TapedPoint at = {
+        facet,
+        p,
+        X,
+        {facet_frame(X, p, facet.direction),
+         share[0] * t[0] + share[1] * t[1] + share[2] * t[2]}};
+    const FacetFrame<Taped>& frame = at.wall.frame;
+    const Taped inner =
+        inner_work(at, state, facet_strain(X, p, frame, residual.v.nodes, of_v),
+                   facet_strain(X, p, frame, residual.u.nodes, of_u));
+    const Taped outer =
+        outer_work(at, residual.loads, residual.own, residual.v, of_v);
+    sum = sum + p.weight * frame.area * (outer - inner);
+  }
+  FacetGradient result;
+  result.value = sum.value;
+  std::array<double, kInputs> by_rates = {};
+  tape.transpose(sum, 1.0, 0.0, result.by_input, by_rates);
+  return result;
+}
+
+void add_edge_gradient(const ShellMesh& mesh, const EdgeLoad& load,
+                       const VectorX& v, ShellGradient& gradient) {
+  for (const LinePoint& p : line_points(mesh, load.nodes)) {
+    double work = 0.0;  // per length
+    for (int k = 0; k < 3; ++k) {
+      const auto at = 6L * load.nodes[k];
+      work += p.shape[k] * (v.segment<3>(at).dot(load.force) +
+                            v.segment<3>(at + 3).dot(load.moment));
+    }
+    gradient.value += p.weight * p.tangent.norm() * work;
+    for (int k = 0; k < 3; ++k) {
+      gradient.by_nodes[load.nodes[k]] +=
+          p.weight * work * p.slope[k] * p.tangent.normalized();
+    }
+  }
+}
+
+}  // namespace
+
+ShellGradient residual_gradient(const ShellMesh& mesh,
+                                const std::vector<Section>& sections,
+                                const ShellLoads& loads, const VectorX& v,
+                                const VectorX& u) {
+  check_shell(mesh, sections);
+  check_loads(mesh, loads);
+  const auto length = static_cast<Eigen::Index>(6 * mesh.nodes.size());
+  if (u.size() != length || v.size() != length) {
+    throw InvalidInput(
+        fmt::format("a shell of {} nodes has vectors of {} and {} numbers; six "
+                    "a node are needed",
+                    mesh.nodes.size(), v.size(), u.size()));
+  }
+  const std::vector<LaminateLaw> laws = laminate_laws(sections);
+  const std::vector<FacetLoad> acting = facet_loads(mesh, loads);
+  std::vector<FacetGradient> parts(mesh.facets.size());
+  parallel_for(
+      static_cast<std::ptrdiff_t>(parts.size()), [&](std::ptrdiff_t k) {
+        static thread_local Tape tape;
+        const int f = static_cast<int>(k);
+        const Facet facet = facet_of(mesh, sections, laws, f);
+        const WholeMatrix K = whole_stiffness(facet);
+        // Bubbles in equilibrium, where the residual is stationary in them.
+        const auto field = [&](const VectorX& nodal,
+                               const WholeVector& forces) -> WholeField {
+          const FacetVector own = numbers_of(mesh, f, nodal);
+          return {Eigen::Map<const FacetField>(own.data()),
+                  bubble_rotation(K, forces, own)};
+        };
+        parts[k] = facet_gradient(
+            {facet, loads, acting[k], field(v, WholeVector::Zero()),
+             field(u, facet_forces(facet, loads, acting[k]))},
+            tape);
+      });
+  ShellGradient gradient;
+  gradient.by_nodes.assign(mesh.nodes.size(), Vec3::Zero());
+  for (std::size_t f = 0; f < parts.size(); ++f) {
+    const auto& by = parts[f].by_input;
+    gradient.value += parts[f].value;
+    for (int i = 0; i < kNodes; ++i) {
+      gradient.by_nodes[mesh.facets[f][i]] +=
+          Vec3(by[3 * i], by[3 * i + 1], by[3 * i + 2]);
+    }
+    gradient.by_thickness.emplace_back(by[18], by[19], by[20]);
+  }
+  for (const EdgeLoad& load : loads.edges) {
+    add_edge_gradient(mesh, load, v, gradient);
+  }
+  if (loads.nodal.size() > 0) {
+    gradient.value += v.dot(loads.nodal);
+  }
+  return gradient;
+}
+
+}  // namespace meniscus::shell

@@ -1,0 +1,29 @@
+/// How loads and stiffness of a shell change with its nodes and thicknesses:
+/// the part of an adjoint gradient that belongs to the state equation.
+#pragma once
+
+#include <vector>
+
+#include "fea/shell/shell_loads.h"
+#include "fea/shell/shell_mesh.h"
+
+namespace meniscus::shell {
+
+struct ShellGradient {
+  double value = 0.0;              // v . (f - K u)
+  Points by_nodes;                 // one per node [of value / length]
+  std::vector<Vec3> by_thickness;  // at each facet's corners [the same]
+};
+
+/// v . (f(x, t) - K(x, t) u) and its derivatives, f the nodal_forces() of the
+/// loads, u and v (6 per node) held: with v the adjoint, all of dJ/dx but what
+/// the functional J itself says. For compliance, f . u, with loads that do not
+/// change, v = u. Exact, by a tape over each facet (core/math/taped.h); the
+/// same bits for any number of threads. Throws as ShellSystem and
+/// nodal_forces() do, and InvalidInput for vectors of another length.
+ShellGradient residual_gradient(const ShellMesh& mesh,
+                                const std::vector<Section>& sections,
+                                const ShellLoads& loads, const VectorX& v,
+                                const VectorX& u);
+
+}  // namespace meniscus::shell

@@ -1,0 +1,64 @@
+/// K u = f of one shell: assembled, factored, solved.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/math/linear_solve.h"
+#include "fea/shell/shell_assembly.h"
+#include "fea/shell/shell_loads.h"
+#include "fea/shell/shell_mesh.h"
+#include "fea/shell/shell_supports.h"
+
+namespace meniscus::shell {
+
+struct ShellSolution {
+  VectorX displacement;  // 6 per node: displacement, rotation [length], [rad]
+  VectorX reaction;      // 6 per node: force, moment of what holds it
+  double strain_energy = 0.0;  // u . K u / 2; of loads of temperature without
+                               // what free expansion would store
+};
+
+/// Stiffness with its factor for any number of load cases. Mesh and sections
+/// are kept by reference.
+class ShellSystem {
+ public:
+  /// Throws MeshError and InvalidInput as check_shell(), laminate_law() and
+  /// ShellFreedom do; SolverError where something is free to move, or memory
+  /// runs out.
+  ShellSystem(const ShellMesh& mesh, const std::vector<Section>& sections,
+              const std::vector<NodeSupport>& supports,
+              const FacetRule& rule = facet_rule());
+
+  ShellSolution solve(const ShellLoads& loads) const;
+
+  /// Solves for loads of the caller's, 6 per node; what is held is held at 0:
+  /// the adjoint of a functional's derivative.
+  VectorX solve_forces(const VectorX& forces) const;
+
+  const ShellFreedom& freedom() const { return freedom_; }
+  const SparseMatrix& stiffness() const { return K_; }
+  const SymmetricFactor& factor() const { return *factor_; }
+  /// Mass on the same unknowns.
+  SparseMatrix mass() const;
+  /// Geometric stiffness (facet_geometric.h) of a solution under its loads, on
+  /// the same unknowns: K x = -lambda K_g x at the factor lambda of the loads
+  /// under which the shell buckles.
+  SparseMatrix geometric(const ShellLoads& loads,
+                         const VectorX& displacement) const;
+
+ private:
+  VectorX stiffness_times(const VectorX& u) const;
+
+  const ShellMesh& mesh_;
+  const std::vector<Section>& sections_;
+  const FacetRule& rule_;
+  std::vector<LaminateLaw> laws_;
+  ShellFreedom freedom_;
+  ShellAssembly assembly_;
+  SparseMatrix K_;
+  std::optional<SymmetricFactor> factor_;
+};
+
+}  // namespace meniscus::shell
