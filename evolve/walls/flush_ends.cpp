@@ -47,6 +47,7 @@ void check_angles(const WallFilms& films, const std::set<int>& vertices,
 
 Vec3 flush_normal(const curves::Curve& curve) {
   std::vector<double> places;
+  places.reserve(kPlaces);
   for (int k = 0; k < kPlaces; ++k) {
     places.push_back(static_cast<double>(k) / kPlaces);
   }
