@@ -13,7 +13,9 @@ namespace meniscus::walls {
 namespace {
 
 constexpr double kStraightOn = 0.87;  // cosine, 30 degrees
+constexpr double kRimGoesOn = 0.966;  // cosine of half as much
 constexpr double kStiffer = 1.3;      // p: far corners would stretch at 2
+constexpr double kCornerReach = 0.6;  // of `reach`: rims' corners need room
 
 /// Length of the shortest way along edges from a held point, up to `reach`;
 /// `reach` beyond.
@@ -48,26 +50,37 @@ std::vector<double> ways_from_held(const SlideInput& input) {
   return way;
 }
 
-/// Directions of the rim where the sheet ends, but for its junctions; 0 of
-/// points inside.
-Points rim_directions(const SlideInput& input) {
+/// The rim where the sheet ends, but for its junctions.
+struct SheetRim {
+  std::vector<char> on;  // per point
+  Points along;          // its directions; 0 at its corners, which stay
+};
+
+SheetRim rim_of(const SlideInput& input) {
   const Sheet& sheet = input.sheet;
   const Points& x = sheet.film.points;
-  Points along(x.size(), Vec3::Zero());
+  SheetRim rim{.on = std::vector<char>(x.size(), 0),
+               .along = Points(x.size(), Vec3::Zero())};
+  std::vector<int> count(x.size(), 0);
   for (std::size_t e = 0; e < sheet.edges.size(); ++e) {
     if (sheet.edge_facets[e][1] >= 0) {
       continue;
     }
     const auto [a, b] = sheet.edges[e];
-    const Vec3 way = x[b] - x[a];
+    const Vec3 way = (x[b] - x[a]).normalized();
     for (const int v : {a, b}) {
-      along[v] += along[v].dot(way) < 0.0 ? Vec3(-way) : way;
+      rim.along[v] += rim.along[v].dot(way) < 0.0 ? Vec3(-way) : way;
+      rim.on[v] = input.held[v] == 0 ? 1 : 0;
+      ++count[v];
     }
   }
   for (std::size_t v = 0; v < x.size(); ++v) {
-    along[v] = input.held[v] != 0 ? Vec3(Vec3::Zero()) : along[v].normalized();
+    const double sum = rim.along[v].norm();
+    rim.along[v] = rim.on[v] != 0 && sum > kRimGoesOn * count[v]
+                       ? Vec3(rim.along[v] / sum)
+                       : Vec3(Vec3::Zero());
   }
-  return along;
+  return rim;
 }
 
 /// Points where the junctions about the sheet turn a corner.
@@ -103,11 +116,12 @@ std::vector<double> stiff_at_corners(const SlideInput& input) {
   std::vector<double> stiffness;
   for (const Triangle& t : input.sheet.film.facets) {
     const Vec3 middle = (x[t[0]] + x[t[1]] + x[t[2]]) / 3.0;
-    double nearest = input.reach;
+    const double around = kCornerReach * input.reach;
+    double nearest = around;
     for (const Vec3& corner : corners) {
       nearest = std::min(nearest, (middle - corner).norm());
     }
-    stiffness.push_back(std::pow(input.reach / nearest, kStiffer));
+    stiffness.push_back(std::pow(around / nearest, kStiffer));
   }
   return stiffness;
 }
@@ -141,6 +155,7 @@ Slides slide(const SlideInput& input) {
                           .values = Eigen::MatrixXd::Zero(
                               static_cast<Eigen::Index>(count), columns),
                           .stiffness = stiff_at_corners(input)};
+  const SheetRim rim = rim_of(input);
   Eigen::Index column = 0;
   for (const auto& [wall, slides] : input.slides) {
     for (std::size_t v = 0; v < count; ++v) {
@@ -150,22 +165,22 @@ Slides slide(const SlideInput& input) {
     column += 3;
   }
   for (std::size_t v = 0; v < count; ++v) {
-    if (input.held[v] == 0 && result.way[v] < input.reach) {
+    const bool stays = rim.on[v] != 0 && rim.along[v].isZero(0.0);
+    if (input.held[v] == 0 && !stays && result.way[v] < input.reach) {
       problem.fixed[v] = 0;
     }
   }
   make_harmonic(problem);
-  // Rims take what lies along them, and what is inside follows: else a narrow
-  // sheet would slide across its rim.
-  const Points along = rim_directions(input);
+  // Rims take what lies along them, corners nothing, and what is inside
+  // follows: else a narrow sheet would slide across its rim.
   for (std::size_t v = 0; v < count; ++v) {
-    if (problem.fixed[v] != 0 || along[v].isZero(0.0)) {
+    if (problem.fixed[v] != 0 || rim.on[v] == 0) {
       continue;
     }
     auto row = problem.values.row(static_cast<Eigen::Index>(v));
     for (Eigen::Index first = 0; first < columns; first += 3) {
       const Vec3 free = row.segment<3>(first).transpose();
-      row.segment<3>(first) = along[v].dot(free) * along[v].transpose();
+      row.segment<3>(first) = rim.along[v].dot(free) * rim.along[v].transpose();
     }
     problem.fixed[v] = 1;
   }

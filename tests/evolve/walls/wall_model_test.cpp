@@ -509,6 +509,23 @@ TEST(WallModel, KeepsFacetsInOrderAroundAColumn) {
   }
 }
 
+// A brim hardly twice as wide as its walls are thick: its outer corners stay,
+// and points of its rim do not run past them.
+TEST(WallModel, KeepsCornersOfANarrowBrim) {
+  for (const auto& [thickness, n] :
+       {std::pair(0.47, 3), std::pair(0.47, 5), std::pair(0.55, 3)}) {
+    const Made made = make(brim_on_column(0.15, n), thickness, 1);
+    const walls::ThickWall& wall = made.model.walls().at(0);
+    EXPECT_TRUE(wall.findings.empty())
+        << thickness << ", " << n << ": " << summary(wall.findings);
+    const Points corners = {{2, 2, -0.5 * thickness},
+                            {-2, 2, -0.5 * thickness},
+                            {2, -2, -0.5 * thickness},
+                            {-2, -2, -0.5 * thickness}};
+    EXPECT_LT(farthest(corners, wall.surface.points), 1e-9);
+  }
+}
+
 TEST(WallModel, TurnsWithItsFilm) {
   const Made made = make(fan({0, 90, 200}), 0.1);
   const Mat3 turn =
