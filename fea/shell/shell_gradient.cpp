@@ -291,4 +291,16 @@ ShellGradient residual_gradient(const ShellMesh& mesh,
   return gradient;
 }
 
+ShellGradient shell_mass(const ShellMesh& mesh,
+                         const std::vector<Section>& sections) {
+  const auto count = static_cast<Eigen::Index>(6 * mesh.nodes.size());
+  VectorX up = VectorX::Zero(count);
+  for (Eigen::Index i = 0; i < count; i += 6) {
+    up[i] = 1.0;
+  }
+  ShellLoads weight;
+  weight.gravity = Vec3::UnitX();
+  return residual_gradient(mesh, sections, weight, up, VectorX::Zero(count));
+}
+
 }  // namespace meniscus::shell

@@ -26,4 +26,9 @@ ShellGradient residual_gradient(const ShellMesh& mesh,
                                 const ShellLoads& loads, const VectorX& v,
                                 const VectorX& u);
 
+/// Mass with its derivatives: the work of a unit of weight on a unit of
+/// displacement. Throws as residual_gradient().
+ShellGradient shell_mass(const ShellMesh& mesh,
+                         const std::vector<Section>& sections);
+
 }  // namespace meniscus::shell

@@ -66,11 +66,15 @@ void check_use(const Case& input, CaseProblems& problems) {
     used_surfaces.insert(wall.films.begin(), wall.films.end());
     used_materials.insert(wall.material);
   }
+  for (const ShellEntry& shell : input.shells) {
+    used_surfaces.insert(shell.films.begin(), shell.films.end());
+    used_materials.insert(shell.material);
+  }
   for (const FilmEntry& film : input.films) {
     used_curves.insert(film.spec.curves.begin(), film.spec.curves.end());
     if (used_surfaces.count(film.spec.name) == 0) {
       problems.warn(film.line, fmt::format("film '{}' encloses no body and is "
-                                           "no wall",
+                                           "no wall or shell",
                                            film.spec.name));
     }
   }
@@ -687,6 +691,8 @@ std::vector<std::string> surface_names(const Case& input) {
   }
   const std::vector<std::string> walls = wall_surface_names(input);
   names.insert(names.end(), walls.begin(), walls.end());
+  const std::vector<std::string> shells = shell_surface_names(input);
+  names.insert(names.end(), shells.begin(), shells.end());
   return names;
 }
 
@@ -714,6 +720,7 @@ void check_case(const Case& input, CaseProblems& problems) {
     check_wetted_walls(input, problems);
     check_inner_surfaces(input, problems);
     check_numbers(input, problems);
+    check_shells(input, problems);
   }
 }
 

@@ -1,0 +1,299 @@
+#include <algorithm>
+#include <set>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "pipeline/case_data/case_checks.h"
+#include "pipeline/case_data/case_curves.h"
+#include "pipeline/case_data/case_values.h"
+#include "pipeline/case_data/case_wetted.h"
+#include "pipeline/case_data/response_kinds.h"
+
+namespace meniscus::case_data {
+
+namespace {
+
+const std::vector<ResponseKind>& kinds_of_shells() {
+  using K = ResponseKind;
+  static const std::vector<ResponseKind> kinds = {
+      K::MeanDisplacement, K::DisplacementNorm, K::Rotation,
+      K::Compliance,       K::StrainEnergy,     K::Mass,
+      K::Volume,           K::MaxVonMises,      K::Envelope,
+      K::Expression};
+  return kinds;
+}
+
+bool is_rim(const std::string& surface) {
+  return surface.find("/rim:") != std::string::npos;
+}
+
+bool has_rim(const loads::Surfaces& surfaces) {
+  return std::any_of(surfaces.begin(), surfaces.end(), is_rim);
+}
+
+/// Notes of one case with shells.
+class ShellChecks {
+ public:
+  ShellChecks(const Case& input, CaseProblems& problems)
+      : input_(input), problems_(problems) {}
+
+  void check() {
+    check_part();
+    check_materials();
+    for (const LoadCaseEntry& load_case : input_.load_cases) {
+      check_supports(load_case);
+      for (const LoadEntry& load : load_case.loads) {
+        check_load(load_case, load);
+      }
+    }
+    std::for_each(input_.responses.begin(), input_.responses.end(),
+                  [this](const ResponseEntry& r) { check_response(r); });
+    check_analysis();
+  }
+
+ private:
+  void check_part() {
+    const ShellEntry& first = input_.shells.front();
+    if (!input_.walls.empty()) {
+      problems_.add(first.line,
+                    fmt::format("shells.{} stands beside walls.{}; a run "
+                                "analyses shells or walls: make all of them "
+                                "one",
+                                first.name, input_.walls.front().name));
+    }
+    for (const BodyEntry& body : input_.bodies) {
+      if (body.material != kVoid) {
+        problems_.add(
+            first.line,
+            fmt::format("shells.{} stands beside bodies.{}, which is solid; a "
+                        "run analyses shells or bodies: make the body's "
+                        "material \"void\", so that it only shapes its films, "
+                        "or take [shells] out",
+                        first.name, body.name));
+      }
+    }
+    if (!input_.symmetry.empty()) {
+      problems_.add(input_.symmetry.front().line,
+                    fmt::format("[symmetry] stands beside shells.{}; hold the "
+                                "rims in the plane instead (fix and "
+                                "fix_rotation), or take [walls]",
+                                first.name));
+    }
+    if (!input_.fillets.empty()) {
+      problems_.add(input_.fillets.front().line,
+                    fmt::format("fillets.{} stands beside shells.{}, whose "
+                                "films meet in lines; take it out",
+                                input_.fillets.front().name, first.name));
+    }
+    if (input_.resolution.refinements == 0) {
+      problems_.add(0,
+                    fmt::format("resolution.film is as long as "
+                                "resolution.fea; shells.{} needs the middles "
+                                "of its edges on the film: half as long, or "
+                                "take it out",
+                                first.name));
+    }
+    if (!input_.resolution.export_edges.empty()) {
+      problems_.add(0, fmt::format("resolution.export is of closed surfaces, "
+                                   "which shells.{} has not; take it out",
+                                   first.name));
+    }
+    if (input_.process.smallest_feature > 0.0) {
+      problems_.add(0,
+                    fmt::format("[process] looks at solids, and shells.{} is "
+                                "none; take it out, and bound the thickness "
+                                "itself",
+                                first.name));
+    }
+  }
+
+  void check_materials() {
+    std::vector<std::string> found;
+    const CaseValues values(input_, initial_design(input_), found);
+    for (const ShellEntry& shell : input_.shells) {
+      const MaterialEntry& material =
+          input_.materials[static_cast<std::size_t>(shell.material)];
+      if (material.orthotropic) {
+        problems_.add(shell.line,
+                      fmt::format("shells.{} is of '{}', which is orthotropic; "
+                                  "shells take isotropic materials",
+                                  shell.name, material.name));
+      } else if (values.follows_design(material.density) ||
+                 values.follows_design(material.youngs_modulus)) {
+        problems_.add(
+            material.line,
+            fmt::format("'{}' follows the design, which materials of shells "
+                        "cannot yet; let the thickness follow it",
+                        material.name));
+      }
+    }
+  }
+
+  void check_supports(const LoadCaseEntry& load_case) {
+    const auto refuse = [&](SourceLine line, const std::string& what) {
+      problems_.add(line, fmt::format("load case '{}' has {}, which shells "
+                                      "do not know; hold components (fix, "
+                                      "fix_rotation) at 0",
+                                      load_case.name, what));
+    };
+    for (const SupportEntry& support : load_case.supports) {
+      if (support.support.kind != loads::SupportKind::Components) {
+        refuse(support.line, "a support along normals");
+      } else if (support.displacement) {
+        refuse(support.line, "an enforced displacement");
+      }
+    }
+    if (!load_case.springs.empty()) {
+      refuse(load_case.line, "springs");
+    }
+    if (!load_case.pins.empty()) {
+      refuse(load_case.pins.front().line, "a rigid support");
+    }
+  }
+
+  void check_load(const LoadCaseEntry& load_case, const LoadEntry& load) {
+    const auto refuse = [&](const std::string& what, const char* instead) {
+      problems_.add(load.line,
+                    fmt::format("load case '{}' has {}, which shells do not "
+                                "know; {}",
+                                load_case.name, what, instead));
+    };
+    const bool on_rim = has_rim(load.surfaces);
+    if (load.size) {
+      return refuse("a load from any direction", "give load cases of forces");
+    }
+    if (load.by != LoadPath::Spread) {
+      return refuse("a rigid or bearing load", "spread it (take `by` out)");
+    }
+    switch (load.kind) {
+      case LoadKind::Force:
+        if (on_rim && load.surfaces.size() > 1) {
+          refuse("a force on several rims together",
+                 "give each an entry with its share");
+        }
+        break;
+      case LoadKind::Remote:
+      case LoadKind::Traction:
+        if (on_rim) {
+          refuse("a moment or a traction on a rim", "give it a force");
+        }
+        break;
+      case LoadKind::Pressure:
+        if (on_rim || load.place.of_place) {
+          refuse(on_rim ? "a pressure on a rim" : "a pressure of place",
+                 "give a film one number, or a traction of place");
+        }
+        break;
+      case LoadKind::Temperature:
+        refuse("a temperature", "take [walls] for it");
+        break;
+      case LoadKind::Preload:
+        refuse("a bolt", "give its force to a film or a rim");
+        break;
+      case LoadKind::Spin: {
+        std::vector<std::string> found;
+        const CaseValues values(input_, initial_design(input_), found);
+        if (values.follows_design(load.number) ||
+            values.follows_design(load.vector) ||
+            values.follows_design(load.at)) {
+          refuse("a spin that follows the design", "give it fixed numbers");
+        }
+        break;
+      }
+      case LoadKind::Gravity:
+        break;
+    }
+  }
+
+  void check_response(const ResponseEntry& response) {
+    const std::vector<ResponseKind>& kinds = kinds_of_shells();
+    const ResponseRow& row = row_of(response.kind);
+    if (!row.of_films &&
+        std::find(kinds.begin(), kinds.end(), response.kind) == kinds.end()) {
+      std::vector<std::string> names;
+      for (const ResponseKind kind : kinds) {
+        names.emplace_back(row_of(kind).name);
+      }
+      problems_.add(
+          response.line,
+          fmt::format("responses.{} is of kind {}, which shells do "
+                      "not have; they have {} and those of films",
+                      response.name, row.name, fmt::join(names, ", ")));
+    } else if (is_rim(response.surface) &&
+               (response.kind != ResponseKind::MeanDisplacement ||
+                response.weight)) {
+      problems_.add(response.line,
+                    fmt::format("responses.{} is on a rim, where shells have "
+                                "mean_displacement without weight; name a film",
+                                response.name));
+    }
+  }
+
+  void check_analysis() {
+    const AnalysisEntry& analysis = input_.analysis;
+    const auto refuse = [&](const char* what) {
+      problems_.add(0, fmt::format("analysis.{} is of solids, and shells.{} is "
+                                   "none; take it out",
+                                   what, input_.shells.front().name));
+    };
+    if (analysis.adapt) {
+      refuse("adapt");
+    }
+    if (!analysis.exclude.empty()) {
+      refuse("exclude");
+    }
+    if (analysis.frequencies > 0) {
+      refuse("frequencies");
+    }
+    if (analysis.buckling.value_or(0) > 0) {
+      refuse("buckling");
+    }
+    if (analysis.solver != equations::SolverKind::Automatic &&
+        analysis.solver != equations::SolverKind::Cholesky) {
+      refuse("solver");
+    }
+  }
+
+  const Case& input_;
+  CaseProblems& problems_;
+};
+
+}  // namespace
+
+void check_shells(const Case& input, CaseProblems& problems) {
+  if (!input.shells.empty()) {
+    ShellChecks(input, problems).check();
+  }
+}
+
+std::vector<std::string> shell_surface_names(const Case& input) {
+  const std::set<std::string> held = held_curves(input);
+  std::vector<std::string> names;
+  for (const ShellEntry& shell : input.shells) {
+    for (const FilmEntry& film : input.films) {
+      if (std::count(shell.films.begin(), shell.films.end(), film.spec.name) ==
+          0) {
+        continue;
+      }
+      names.push_back(film.spec.name + "/back");
+      for (const std::string& curve : film.spec.curves) {
+        const bool is_free = std::any_of(
+            input.curves.begin(), input.curves.end(),
+            [&](const CurveEntry& c) { return c.free && c.name == curve; });
+        if (!is_free && !slides_at(input, curve)) {
+          names.push_back(film.spec.name + "/rim:" + curve);
+        }
+        for (const CurveEntry& name : input.curves) {
+          if (!held.contains(name.name) &&
+              input.sharing_sides.contains({curve, name.name})) {
+            names.push_back(film.spec.name + "/rim:" + name.name);
+          }
+        }
+      }
+    }
+  }
+  return names;
+}
+
+}  // namespace meniscus::case_data
