@@ -237,10 +237,10 @@ void add_edge_gradient(const ShellMesh& mesh, const EdgeLoad& load,
 
 }  // namespace
 
-ShellGradient residual_gradient(const ShellMesh& mesh,
-                                const std::vector<Section>& sections,
-                                const ShellLoads& loads, const VectorX& v,
-                                const VectorX& u) {
+ShellGradient residual_gradient(
+    const ShellMesh& mesh, const std::vector<Section>& sections,
+    const ShellLoads& loads, const VectorX& v, const VectorX& u,
+    const std::vector<Eigen::Vector2d>* on_bubbles) {
   check_shell(mesh, sections);
   check_loads(mesh, loads);
   const auto length = static_cast<Eigen::Index>(6 * mesh.nodes.size());
@@ -266,10 +266,14 @@ ShellGradient residual_gradient(const ShellMesh& mesh,
           return {Eigen::Map<const FacetField>(own.data()),
                   bubble_rotation(K, forces, own)};
         };
-        parts[k] = facet_gradient(
-            {facet, loads, acting[k], field(v, WholeVector::Zero()),
-             field(u, facet_forces(facet, loads, acting[k]))},
-            tape);
+        WholeVector on_v = WholeVector::Zero();
+        if (on_bubbles != nullptr) {
+          on_v.tail<2>() = (*on_bubbles)[k];
+        }
+        parts[k] =
+            facet_gradient({facet, loads, acting[k], field(v, on_v),
+                            field(u, facet_forces(facet, loads, acting[k]))},
+                           tape);
       });
   ShellGradient gradient;
   gradient.by_nodes.assign(mesh.nodes.size(), Vec3::Zero());
