@@ -720,7 +720,6 @@ void check_case(const Case& input, CaseProblems& problems) {
     check_wetted_walls(input, problems);
     check_inner_surfaces(input, problems);
     check_numbers(input, problems);
-    check_shells(input, problems);
   }
 }
 
@@ -803,6 +802,53 @@ void check_joined_films(const Case& input, CaseProblems& problems) {
   }
 }
 
+namespace {
+
+bool is_among_films(const FilmEntry& film,
+                    const std::vector<std::string>& films) {
+  return std::count(films.begin(), films.end(), film.spec.name) > 0;
+}
+
+/// The film's back and its rims, where it has a thickness; none at curves that
+/// are of several, as `uses` says, and of those that it does not know all.
+void add_sides(const Case& input, const FilmEntry& film,
+               const std::set<std::string>& held,
+               const std::map<std::string, int>& uses,
+               std::vector<std::string>& names) {
+  names.push_back(film.spec.name + "/back");
+  for (const std::string& curve : film.spec.curves) {
+    const bool is_free = std::any_of(
+        input.curves.begin(), input.curves.end(),
+        [&](const CurveEntry& c) { return c.free && c.name == curve; });
+    const auto known = uses.find(curve);
+    const bool is_own = known == uses.end() || known->second == 1;
+    if (is_own && !is_free && !slides_at(input, curve)) {
+      names.push_back(film.spec.name + "/rim:" + curve);
+    }
+    for (const CurveEntry& name : input.curves) {
+      if (!held.contains(name.name) &&
+          input.sharing_sides.contains({curve, name.name})) {
+        names.push_back(film.spec.name + "/rim:" + name.name);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> shell_surface_names(const Case& input) {
+  const std::set<std::string> held = held_curves(input);
+  std::vector<std::string> names;
+  for (const ShellEntry& shell : input.shells) {
+    for (const FilmEntry& film : input.films) {
+      if (is_among_films(film, shell.films)) {
+        add_sides(input, film, held, {}, names);
+      }
+    }
+  }
+  return names;
+}
+
 std::vector<std::string> wall_surface_names(const Case& input) {
   std::map<std::string, int> uses;  // of curves by films with walls
   for (const WallEntry& wall : input.walls) {
@@ -814,25 +860,10 @@ std::vector<std::string> wall_surface_names(const Case& input) {
   std::vector<std::string> names;
   for (const WallEntry& wall : input.walls) {
     for (const FilmEntry& film : input.films) {
-      if (std::count(wall.films.begin(), wall.films.end(), film.spec.name) ==
-          0) {
+      if (!is_among_films(film, wall.films)) {
         continue;
       }
-      names.push_back(film.spec.name + "/back");
-      for (const std::string& curve : film.spec.curves) {
-        const bool is_free = std::any_of(
-            input.curves.begin(), input.curves.end(),
-            [&](const CurveEntry& c) { return c.free && c.name == curve; });
-        if (uses[curve] == 1 && !is_free && !slides_at(input, curve)) {
-          names.push_back(film.spec.name + "/rim:" + curve);
-        }
-        for (const CurveEntry& name : input.curves) {
-          if (!held.contains(name.name) &&
-              input.sharing_sides.contains({curve, name.name})) {
-            names.push_back(film.spec.name + "/rim:" + name.name);
-          }
-        }
-      }
+      add_sides(input, film, held, uses, names);
       for (const CapEntry& cap : input.caps) {
         if (cap.wetted && cap.symmetry < 0 &&
             share(cap.spec.curves(), film.spec.curves)) {

@@ -52,8 +52,6 @@ std::vector<std::string> wall_surface_names(const Case& input);
 
 /// Of shells, beside their films.
 std::vector<std::string> shell_surface_names(const Case& input);
-/// Notes what shells cannot do, and what can instead.
-void check_shells(const Case& input, CaseProblems& problems);
 
 /// The curves that the films of a wall end on, once for each film.
 std::vector<std::string> curves_of_wall(const Case& input,

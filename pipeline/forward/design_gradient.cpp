@@ -90,7 +90,7 @@ std::vector<char> Adjoint::needed(const std::vector<int>& wanted) const {
 void Adjoint::solve_shell_adjoints(DesignGradient& result) {
   for (Backward& backward : backwards_) {
     for (const responses::CasePartials& partials : backward.partials.cases) {
-      const responses::ShellCase& solved =
+      const shells::ShellCase& solved =
           in_.context.shell
               ->cases[static_cast<std::size_t>(partials.load_case)];
       BackwardCase& back = backward.cases.emplace_back();
@@ -103,7 +103,7 @@ void Adjoint::solve_shell_adjoints(DesignGradient& result) {
       back.lambda =
           solved.system->solve_forces(right.size() == solved.displacement.size()
                                           ? right
-                                          : responses::with_rotations(right));
+                                          : shells::with_rotations(right));
       ++result.solves;
     }
   }
@@ -111,13 +111,13 @@ void Adjoint::solve_shell_adjoints(DesignGradient& result) {
 
 /// Nodes and thicknesses to the film's points and the thicknesses' numbers.
 void Adjoint::through_shell(Backward& backward) const {
-  const responses::ShellPart& shell = *in_.context.shell;
+  const shells::ShellPart& shell = *in_.context.shell;
   responses::ResponsePartials& partials = backward.partials;
   partials.by_nodes.resize(shell.mesh.nodes.size(), Vec3::Zero());
   partials.by_thickness.resize(shell.mesh.facets.size(), Vec3::Zero());
   for (const BackwardCase& back : backward.cases) {
     const auto c = static_cast<std::size_t>(back.load_case);
-    const shell::ShellGradient state = responses::work_gradient(
+    const shell::ShellGradient state = shells::work_gradient(
         shell, c, back.lambda, shell.cases[c].displacement);
     for (std::size_t i = 0; i < state.by_nodes.size(); ++i) {
       partials.by_nodes[i] += state.by_nodes[i];
@@ -126,7 +126,7 @@ void Adjoint::through_shell(Backward& backward) const {
       partials.by_thickness[f] += state.by_thickness[f];
     }
   }
-  const ShellModel& model = *in_.part.shells;
+  const shells::ShellModel& model = *in_.part.shells;
   Points by_film =
       model.to_film(partials.by_nodes, in_.context.film_state->points.size());
   if (partials.film.points.empty()) {
@@ -315,9 +315,8 @@ double Adjoint::load_rate(const Backward& backward, std::size_t k,
       by_forces.size() > 0) {
     v += by_forces;
   }
-  return responses::work_rate(*in_.context.shell,
-                              in_.context.inputs.load_cases[c],
-                              rates.load_cases[c], v);
+  return shells::work_rate(*in_.context.shell, in_.context.inputs.load_cases[c],
+                           rates.load_cases[c], v);
 }
 
 /// The response's derivative by the variable that `rates` belong to.

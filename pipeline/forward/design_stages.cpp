@@ -138,13 +138,14 @@ bool solve_elasticity(const FrozenPart& part, KeepStiffness keep,
   const StageMeter meter;
   equations::ElasticSolution& solution = staged.fields.solution;
   try {
-    solution = part.shells
-                   ? solve_shell(staged.fields.inputs, *staged.fields.shell)
-                   : part.elasticity->solve(
-                         staged.fields.mesh, staged.fields.inputs.load_cases,
-                         staged.fields.inputs.materials,
-                         keep == KeepStiffness::Yes ? &staged.adjoint.elastic
-                                                    : nullptr);
+    solution =
+        part.shells
+            ? shells::solve_shell(staged.fields.inputs, *staged.fields.shell)
+            : part.elasticity->solve(
+                  staged.fields.mesh, staged.fields.inputs.load_cases,
+                  staged.fields.inputs.materials,
+                  keep == KeepStiffness::Yes ? &staged.adjoint.elastic
+                                             : nullptr);
   } catch (const InvalidInput& error) {
     // A load or support that this design's surface cannot take.
     result.failure = Failure{FailureKind::SolverFailed, error.what()};

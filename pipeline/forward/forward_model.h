@@ -19,7 +19,7 @@
 #include "pipeline/forward/stage_meter.h"
 #include "pipeline/responses/response_modes.h"
 #include "pipeline/responses/scans.h"
-#include "pipeline/responses/shell_part.h"
+#include "pipeline/shells/shell_part.h"
 
 namespace meniscus::forward {
 
@@ -75,7 +75,7 @@ struct EvaluationFields {
   TetMesh mesh;                   // ten-node
   equations::ElasticSolution solution;
   /// Of a case with shells, whose `mesh` has faces only; else null.
-  std::shared_ptr<responses::ShellPart> shell;
+  std::shared_ptr<shells::ShellPart> shell;
   responses::ResponseModes response_modes;  // that the responses take
   std::vector<PartStress> stresses;    // per load case; found once, at the end
   std::vector<WorstCase> worst_cases;  // behind the load cases; the same

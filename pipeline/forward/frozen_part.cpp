@@ -303,6 +303,7 @@ bool freeze_shells(const case_data::EvaluatedCase& inputs, FrozenPart& part) {
   const QuadraticSurface surface =
       part.shells->surface(part.film->reference().points);
   part.start.tet = figures_of(surface);
+  require_shell_work(surface.base.facets.size(), inputs.fea_edge);
   meter.add_to(part.start.seconds.mesh, part.start.operations.mesh);
   return true;
 }
@@ -437,7 +438,7 @@ responses::ResponseContext FrozenPart::context(
     const case_data::EvaluatedCase& inputs, const settle::FilmState& film_state,
     const TetMesh& mesh, const equations::ElasticSolution& solution,
     const responses::ResponseModes& modes,
-    const responses::ShellPart* shell) const {
+    const shells::ShellPart* shell) const {
   return {inputs,      mesh,   solution, exclusion.what, &*film,
           &film_state, &pairs, &scans,   &modes,         shell};
 }

@@ -12,8 +12,8 @@
 #include "mesh_tet/tetrahedralize.h"
 #include "pipeline/forward/adaptation.h"
 #include "pipeline/forward/forward_model.h"
-#include "pipeline/forward/shells.h"
 #include "pipeline/responses/responses.h"
+#include "pipeline/shells/shell_model.h"
 
 namespace meniscus::forward {
 
@@ -38,8 +38,9 @@ struct FrozenPart {
   std::optional<frozen::FilmModel> film;
   std::optional<fillets::FilletModel> fillets;  // of a case that has some
   std::optional<walls::WallModel> walls;        // the same
-  std::optional<ShellModel> shells;  // the same; nothing below is then there
-  TetMesh base_mesh;                 // ten-node, at the initial design
+  std::optional<shells::ShellModel>
+      shells;         // the same; nothing below is then there
+  TetMesh base_mesh;  // ten-node, at the initial design
   std::vector<char> curve_edge;
   std::optional<mesh_tet::MeshMotion> motion;
   std::optional<elastic::ElasticModel> elasticity;
@@ -65,7 +66,7 @@ struct FrozenPart {
       const settle::FilmState& film_state, const TetMesh& mesh,
       const equations::ElasticSolution& solution,
       const responses::ResponseModes& modes,
-      const responses::ShellPart* shell = nullptr) const;
+      const shells::ShellPart* shell = nullptr) const;
 };
 
 /// The chain of stages at the initial design of `part.input`, each kept for

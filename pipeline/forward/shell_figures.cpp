@@ -2,17 +2,17 @@
 
 namespace meniscus::forward {
 
-void find_shell_stresses(responses::ShellPart& part) {
+void find_shell_stresses(shells::ShellPart& part) {
   for (std::size_t k = 0; k < part.cases.size(); ++k) {
-    part.cases[k].stress = responses::shell_stresses(part, k);
+    part.cases[k].stress = shells::shell_stresses(part, k);
   }
 }
 
 StressFigures shell_figures(const EvaluationFields& fields,
                             std::size_t load_case) {
-  const responses::ShellPart& part = *fields.shell;
-  const responses::ShellPeak peak =
-      responses::shell_peak(part, part.cases[load_case].stress);
+  const shells::ShellPart& part = *fields.shell;
+  const shells::ShellPeak peak =
+      shells::shell_peak(part, part.cases[load_case].stress);
   StressFigures figures{.load_case = fields.inputs.load_cases[load_case].name,
                         .max_von_mises = peak.von_mises,
                         .position = peak.position};

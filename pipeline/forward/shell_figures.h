@@ -6,7 +6,7 @@
 namespace meniscus::forward {
 
 /// Fills in each load case's.
-void find_shell_stresses(responses::ShellPart& part);
+void find_shell_stresses(shells::ShellPart& part);
 
 /// The peak at nodes of both faces and the middle; with the safety of the
 /// material there.

@@ -123,10 +123,6 @@ void read_support(CaseContext& context, const CaseTable& table,
   const bool rigid = table.choice("by") == "rigid";
   const bool turns = rigid || !result.shells.empty();
   const bool fixes = table.has("fix") || (turns && table.has("fix_rotation"));
-  if (!turns) {
-    refuse_foreign(context, table, {"fix_rotation"},
-                   "a support by nodes (by = \"rigid\" and shells have it)");
-  }
   if (fixes == springs) {
     context.problems.add(
         table.line(),
@@ -154,6 +150,10 @@ void read_support(CaseContext& context, const CaseTable& table,
     case_data::SupportEntry entry;
     entry.line = table.line();
     read_fix(context, table, entry);
+    if (!turns) {
+      refuse_foreign(context, table, {"fix_rotation"},
+                     "a support by nodes (by = \"rigid\" and shells have it)");
+    }
     for (const std::string& surface : surfaces) {
       entry.support.surface = surface;
       load_case.supports.push_back(entry);

@@ -84,7 +84,7 @@ const std::vector<element::Material>& materials(const ResponseTask& task) {
 
 /// Of a shell, both sides of a film are its facets.
 std::string surface_of(const ResponseTask& task) {
-  return task.fields.shell != nullptr ? film_of(task.response.surface)
+  return task.fields.shell != nullptr ? shells::film_of(task.response.surface)
                                       : task.response.surface;
 }
 

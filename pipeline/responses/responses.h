@@ -12,7 +12,7 @@
 #include "pipeline/case_data/case.h"
 #include "pipeline/responses/response_modes.h"
 #include "pipeline/responses/scans.h"
-#include "pipeline/responses/shell_part.h"
+#include "pipeline/shells/shell_part.h"
 
 namespace meniscus::responses {
 
@@ -26,10 +26,10 @@ struct ResponseContext {
   const frozen::FilmModel* film = nullptr;
   const settle::FilmState* film_state = nullptr;
   const functionals::ThicknessPairs* pairs =
-      nullptr;                           // thickness_pairs_of() the model
-  const Scans* scans = nullptr;          // read_scans() of the case
-  const ResponseModes* modes = nullptr;  // of the design
-  const ShellPart* shell = nullptr;      // of a case with shells
+      nullptr;                               // thickness_pairs_of() the model
+  const Scans* scans = nullptr;              // read_scans() of the case
+  const ResponseModes* modes = nullptr;      // of the design
+  const shells::ShellPart* shell = nullptr;  // of a case with shells
 };
 
 /// What a response changes by one load case, all else held. What is empty is

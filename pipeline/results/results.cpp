@@ -111,13 +111,13 @@ void add_shell_fields(const case_data::Case& input,
                       const forward::EvaluationFields& fields,
                       std::size_t load_case, const std::string& ending,
                       io::MeshFields& out) {
-  const responses::ShellPart& part = *fields.shell;
+  const shells::ShellPart& part = *fields.shell;
   const VectorX& u = fields.solution.displacements[load_case];
   out.points.push_back(node_field("displacement" + ending, input.units.length,
                                   3, u.data(),
                                   static_cast<std::size_t>(u.size())));
   const VectorX turned =
-      responses::rotations_of(part.cases[load_case].displacement);
+      shells::rotations_of(part.cases[load_case].displacement);
   out.points.push_back(node_field("rotation" + ending, "rad", 3, turned.data(),
                                   static_cast<std::size_t>(turned.size())));
   using W = shell::WallStress;
@@ -126,12 +126,12 @@ void add_shell_fields(const case_data::Case& input,
         std::pair("front", &W::positive)}) {
     out.points.push_back(
         shell_field(input, std::string(name) + "_von_mises" + ending,
-                    responses::nodal_von_mises(part, load_case, {height})));
+                    shells::nodal_von_mises(part, load_case, {height})));
   }
   out.points.push_back(shell_field(
       input, "von_mises" + ending,
-      responses::nodal_von_mises(part, load_case,
-                                 {&W::negative, &W::middle, &W::positive})));
+      shells::nodal_von_mises(part, load_case,
+                              {&W::negative, &W::middle, &W::positive})));
 }
 
 /// Mean over the facets at each node, linear along edges.

@@ -1,26 +1,24 @@
+#include "pipeline/shells/shell_checks.h"
+
 #include <algorithm>
-#include <set>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "pipeline/case_data/case_checks.h"
-#include "pipeline/case_data/case_curves.h"
 #include "pipeline/case_data/case_values.h"
-#include "pipeline/case_data/case_wetted.h"
 #include "pipeline/case_data/response_kinds.h"
 
-namespace meniscus::case_data {
+namespace meniscus::shells {
 
 namespace {
 
-const std::vector<ResponseKind>& kinds_of_shells() {
-  using K = ResponseKind;
-  static const std::vector<ResponseKind> kinds = {
+const std::vector<case_data::ResponseKind>& kinds_of_shells() {
+  using K = case_data::ResponseKind;
+  static const std::vector<case_data::ResponseKind> kinds = {
       K::MeanDisplacement, K::DisplacementNorm, K::Rotation,
       K::Compliance,       K::StrainEnergy,     K::Mass,
-      K::Volume,           K::MaxVonMises,      K::Envelope,
-      K::Expression};
+      K::Volume,           K::MaxVonMises,      K::VonMisesNorm,
+      K::Envelope,         K::Expression};
   return kinds;
 }
 
@@ -35,26 +33,27 @@ bool has_rim(const loads::Surfaces& surfaces) {
 /// Notes of one case with shells.
 class ShellChecks {
  public:
-  ShellChecks(const Case& input, CaseProblems& problems)
+  ShellChecks(const case_data::Case& input, case_data::CaseProblems& problems)
       : input_(input), problems_(problems) {}
 
   void check() {
     check_part();
     check_materials();
-    for (const LoadCaseEntry& load_case : input_.load_cases) {
+    for (const case_data::LoadCaseEntry& load_case : input_.load_cases) {
       check_supports(load_case);
-      for (const LoadEntry& load : load_case.loads) {
+      for (const case_data::LoadEntry& load : load_case.loads) {
         check_load(load_case, load);
       }
     }
-    std::for_each(input_.responses.begin(), input_.responses.end(),
-                  [this](const ResponseEntry& r) { check_response(r); });
+    std::for_each(
+        input_.responses.begin(), input_.responses.end(),
+        [this](const case_data::ResponseEntry& r) { check_response(r); });
     check_analysis();
   }
 
  private:
   void check_part() {
-    const ShellEntry& first = input_.shells.front();
+    const case_data::ShellEntry& first = input_.shells.front();
     if (!input_.walls.empty()) {
       problems_.add(first.line,
                     fmt::format("shells.{} stands beside walls.{}; a run "
@@ -62,8 +61,8 @@ class ShellChecks {
                                 "one",
                                 first.name, input_.walls.front().name));
     }
-    for (const BodyEntry& body : input_.bodies) {
-      if (body.material != kVoid) {
+    for (const case_data::BodyEntry& body : input_.bodies) {
+      if (body.material != case_data::kVoid) {
         problems_.add(
             first.line,
             fmt::format("shells.{} stands beside bodies.{}, which is solid; a "
@@ -72,13 +71,6 @@ class ShellChecks {
                         "or take [shells] out",
                         first.name, body.name));
       }
-    }
-    if (!input_.symmetry.empty()) {
-      problems_.add(input_.symmetry.front().line,
-                    fmt::format("[symmetry] stands beside shells.{}; hold the "
-                                "rims in the plane instead (fix and "
-                                "fix_rotation), or take [walls]",
-                                first.name));
     }
     if (!input_.fillets.empty()) {
       problems_.add(input_.fillets.front().line,
@@ -110,9 +102,10 @@ class ShellChecks {
 
   void check_materials() {
     std::vector<std::string> found;
-    const CaseValues values(input_, initial_design(input_), found);
-    for (const ShellEntry& shell : input_.shells) {
-      const MaterialEntry& material =
+    const case_data::CaseValues values(
+        input_, case_data::initial_design(input_), found);
+    for (const case_data::ShellEntry& shell : input_.shells) {
+      const case_data::MaterialEntry& material =
           input_.materials[static_cast<std::size_t>(shell.material)];
       if (material.orthotropic) {
         problems_.add(shell.line,
@@ -130,14 +123,15 @@ class ShellChecks {
     }
   }
 
-  void check_supports(const LoadCaseEntry& load_case) {
-    const auto refuse = [&](SourceLine line, const std::string& what) {
+  void check_supports(const case_data::LoadCaseEntry& load_case) {
+    const auto refuse = [&](case_data::SourceLine line,
+                            const std::string& what) {
       problems_.add(line, fmt::format("load case '{}' has {}, which shells "
                                       "do not know; hold components (fix, "
                                       "fix_rotation) at 0",
                                       load_case.name, what));
     };
-    for (const SupportEntry& support : load_case.supports) {
+    for (const case_data::SupportEntry& support : load_case.supports) {
       if (support.support.kind != loads::SupportKind::Components) {
         refuse(support.line, "a support along normals");
       } else if (support.displacement) {
@@ -152,7 +146,8 @@ class ShellChecks {
     }
   }
 
-  void check_load(const LoadCaseEntry& load_case, const LoadEntry& load) {
+  void check_load(const case_data::LoadCaseEntry& load_case,
+                  const case_data::LoadEntry& load) {
     const auto refuse = [&](const std::string& what, const char* instead) {
       problems_.add(load.line,
                     fmt::format("load case '{}' has {}, which shells do not "
@@ -163,37 +158,38 @@ class ShellChecks {
     if (load.size) {
       return refuse("a load from any direction", "give load cases of forces");
     }
-    if (load.by != LoadPath::Spread) {
+    if (load.by != case_data::LoadPath::Spread) {
       return refuse("a rigid or bearing load", "spread it (take `by` out)");
     }
     switch (load.kind) {
-      case LoadKind::Force:
+      case case_data::LoadKind::Force:
         if (on_rim && load.surfaces.size() > 1) {
           refuse("a force on several rims together",
                  "give each an entry with its share");
         }
         break;
-      case LoadKind::Remote:
-      case LoadKind::Traction:
+      case case_data::LoadKind::Remote:
+      case case_data::LoadKind::Traction:
         if (on_rim) {
           refuse("a moment or a traction on a rim", "give it a force");
         }
         break;
-      case LoadKind::Pressure:
+      case case_data::LoadKind::Pressure:
         if (on_rim || load.place.of_place) {
           refuse(on_rim ? "a pressure on a rim" : "a pressure of place",
                  "give a film one number, or a traction of place");
         }
         break;
-      case LoadKind::Temperature:
+      case case_data::LoadKind::Temperature:
         refuse("a temperature", "take [walls] for it");
         break;
-      case LoadKind::Preload:
+      case case_data::LoadKind::Preload:
         refuse("a bolt", "give its force to a film or a rim");
         break;
-      case LoadKind::Spin: {
+      case case_data::LoadKind::Spin: {
         std::vector<std::string> found;
-        const CaseValues values(input_, initial_design(input_), found);
+        const case_data::CaseValues values(
+            input_, case_data::initial_design(input_), found);
         if (values.follows_design(load.number) ||
             values.follows_design(load.vector) ||
             values.follows_design(load.at)) {
@@ -201,19 +197,19 @@ class ShellChecks {
         }
         break;
       }
-      case LoadKind::Gravity:
+      case case_data::LoadKind::Gravity:
         break;
     }
   }
 
-  void check_response(const ResponseEntry& response) {
-    const std::vector<ResponseKind>& kinds = kinds_of_shells();
-    const ResponseRow& row = row_of(response.kind);
+  void check_response(const case_data::ResponseEntry& response) {
+    const std::vector<case_data::ResponseKind>& kinds = kinds_of_shells();
+    const case_data::ResponseRow& row = case_data::row_of(response.kind);
     if (!row.of_films &&
         std::find(kinds.begin(), kinds.end(), response.kind) == kinds.end()) {
       std::vector<std::string> names;
-      for (const ResponseKind kind : kinds) {
-        names.emplace_back(row_of(kind).name);
+      for (const case_data::ResponseKind kind : kinds) {
+        names.emplace_back(case_data::row_of(kind).name);
       }
       problems_.add(
           response.line,
@@ -221,17 +217,42 @@ class ShellChecks {
                       "not have; they have {} and those of films",
                       response.name, row.name, fmt::join(names, ", ")));
     } else if (is_rim(response.surface) &&
-               (response.kind != ResponseKind::MeanDisplacement ||
+               (response.kind != case_data::ResponseKind::MeanDisplacement ||
                 response.weight)) {
       problems_.add(response.line,
                     fmt::format("responses.{} is on a rim, where shells have "
                                 "mean_displacement without weight; name a film",
                                 response.name));
+    } else if (response.kind == case_data::ResponseKind::VonMisesNorm) {
+      check_norm(response);
+    }
+  }
+
+  /// Pressures and weight stress a wall beside what they move it by.
+  void check_norm(const case_data::ResponseEntry& response) {
+    std::vector<std::string> found;
+    const case_data::CaseValues values(
+        input_, case_data::initial_design(input_), found);
+    const case_data::LoadCaseEntry& load_case =
+        input_.load_cases[static_cast<std::size_t>(response.load_case)];
+    for (const case_data::LoadEntry& load : load_case.loads) {
+      const bool pressed = load.kind == case_data::LoadKind::Pressure &&
+                           values.follows_design(load.place.quantity);
+      if (pressed || (load.kind == case_data::LoadKind::Gravity &&
+                      values.follows_design(load.vector))) {
+        problems_.add(
+            response.line,
+            fmt::format("responses.{} is of load case '{}', whose {} follows "
+                        "the design, which norms of shells cannot yet; give it "
+                        "a fixed number",
+                        response.name, load_case.name,
+                        pressed ? "pressure" : "gravity"));
+      }
     }
   }
 
   void check_analysis() {
-    const AnalysisEntry& analysis = input_.analysis;
+    const case_data::AnalysisEntry& analysis = input_.analysis;
     const auto refuse = [&](const char* what) {
       problems_.add(0, fmt::format("analysis.{} is of solids, and shells.{} is "
                                    "none; take it out",
@@ -255,45 +276,17 @@ class ShellChecks {
     }
   }
 
-  const Case& input_;
-  CaseProblems& problems_;
+  const case_data::Case& input_;
+  case_data::CaseProblems& problems_;
 };
 
 }  // namespace
 
-void check_shells(const Case& input, CaseProblems& problems) {
+void check_shells(const case_data::Case& input,
+                  case_data::CaseProblems& problems) {
   if (!input.shells.empty()) {
     ShellChecks(input, problems).check();
   }
 }
 
-std::vector<std::string> shell_surface_names(const Case& input) {
-  const std::set<std::string> held = held_curves(input);
-  std::vector<std::string> names;
-  for (const ShellEntry& shell : input.shells) {
-    for (const FilmEntry& film : input.films) {
-      if (std::count(shell.films.begin(), shell.films.end(), film.spec.name) ==
-          0) {
-        continue;
-      }
-      names.push_back(film.spec.name + "/back");
-      for (const std::string& curve : film.spec.curves) {
-        const bool is_free = std::any_of(
-            input.curves.begin(), input.curves.end(),
-            [&](const CurveEntry& c) { return c.free && c.name == curve; });
-        if (!is_free && !slides_at(input, curve)) {
-          names.push_back(film.spec.name + "/rim:" + curve);
-        }
-        for (const CurveEntry& name : input.curves) {
-          if (!held.contains(name.name) &&
-              input.sharing_sides.contains({curve, name.name})) {
-            names.push_back(film.spec.name + "/rim:" + name.name);
-          }
-        }
-      }
-    }
-  }
-  return names;
-}
-
-}  // namespace meniscus::case_data
+}  // namespace meniscus::shells

@@ -1,4 +1,4 @@
-#include "pipeline/forward/shells.h"
+#include "pipeline/shells/shell_model.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 #include "evolve/walls/rim_shape.h"
 #include "evolve/walls/wall_films.h"
 
-namespace meniscus::forward {
+namespace meniscus::shells {
 
 namespace {
 
@@ -117,39 +117,44 @@ ShellModel::ShellModel(const case_data::Case& input,
   }
   specs_ = walls::on_films(inputs.shells, films.mesh, films.wall, films.rims);
   for (const case_data::ShellEntry& entry : input.shells) {
-    line_names_.push_back(fmt::format("{}: shells.{}.thickness",
-                                      case_data::place(input, entry.line),
-                                      entry.name));
+    keys_.push_back(fmt::format("{}: shells.{}.thickness",
+                                case_data::place(input, entry.line),
+                                entry.name));
   }
   rims_ = rims_of(films, nodes_);
 }
 
-std::shared_ptr<responses::ShellPart> ShellModel::part(
+double ShellModel::thickness_at(std::size_t shell, Numbers numbers,
+                                const Vec3& at) const {
+  double thickness = 0.0;
+  try {
+    thickness = value_at(specs_[shell].thickness, numbers, at);
+  } catch (const ExpressionError& error) {
+    throw InvalidInput(
+        fmt::format("{} has no value: {}", keys_[shell], error.what()));
+  }
+  if (!(thickness > 0.0) || !std::isfinite(thickness)) {
+    throw InvalidInput(fmt::format(
+        "{} is {:g} at ({:.4g}, {:.4g}, {:.4g}); it must be above 0 on the "
+        "whole film",
+        keys_[shell], thickness, at.x(), at.y(), at.z()));
+  }
+  return thickness;
+}
+
+std::shared_ptr<ShellPart> ShellModel::part(
     const case_data::EvaluatedCase& inputs, const Points& film) const {
-  auto part = std::make_shared<responses::ShellPart>();
+  auto part = std::make_shared<ShellPart>();
   const QuadraticSurface surface = nodes_.at(film);
   part->mesh = shell::shell_mesh(
       surface, VectorX::Ones(std::ssize(surface.base.points)));
   part->mesh.section = section_;
   for (std::size_t f = 0; f < section_.size(); ++f) {
     const auto s = static_cast<std::size_t>(section_[f]);
-    const Numbers numbers = inputs.shells[s].thickness.own();
     for (int k = 0; k < 3; ++k) {
-      const Vec3& at = reference_[nodes_.mesh.facets[f][k]];
-      double t = 0.0;
-      try {
-        t = value_at(specs_[s].thickness, numbers, at);
-      } catch (const ExpressionError& error) {
-        throw InvalidInput(
-            fmt::format("{} has no value: {}", line_names_[s], error.what()));
-      }
-      if (!(t > 0.0) || !std::isfinite(t)) {
-        throw InvalidInput(fmt::format(
-            "{} is {:g} at ({:.4g}, {:.4g}, {:.4g}); it must be above 0 on the "
-            "whole film",
-            line_names_[s], t, at.x(), at.y(), at.z()));
-      }
-      part->mesh.thickness[f][k] = t;
+      part->mesh.thickness[f][k] =
+          thickness_at(s, inputs.shells[s].thickness.own(),
+                       reference_[nodes_.mesh.facets[f][k]]);
     }
   }
   for (std::size_t s = 0; s < inputs.shells.size(); ++s) {
@@ -188,17 +193,16 @@ std::vector<VectorX> ShellModel::to_numbers(
 }
 
 std::vector<shell::NodeSupport> node_supports(
-    const responses::ShellPart& part, const loads::LoadCase& load_case) {
+    const ShellPart& part, const loads::LoadCase& load_case) {
   std::vector<shell::NodeSupport> supports;
   for (const loads::Support& support : load_case.supports) {
     std::set<int> nodes;
     if (support.surface.find("/rim:") != std::string::npos) {
-      for (const std::array<int, 3>& edge :
-           responses::rim_of(part, support.surface)) {
+      for (const std::array<int, 3>& edge : rim_of(part, support.surface)) {
         nodes.insert(edge.begin(), edge.end());
       }
     } else {
-      const int label = part.skin.label_of(responses::film_of(support.surface));
+      const int label = part.skin.label_of(film_of(support.surface));
       for (int f = 0; f < part.skin.face_count(); ++f) {
         if (part.skin.face_label[f] == label) {
           nodes.insert(part.skin.face(f).begin(), part.skin.face(f).end());
@@ -216,53 +220,69 @@ std::vector<shell::NodeSupport> node_supports(
   return supports;
 }
 
-equations::ElasticSolution solve_shell(const case_data::EvaluatedCase& inputs,
-                                       responses::ShellPart& part) {
-  equations::ElasticSolution solution;
+namespace {
+
+/// That of an earlier load case that is held alike, or a new one.
+std::shared_ptr<const shell::ShellSystem> system_of(
+    const case_data::EvaluatedCase& inputs, std::size_t load_case,
+    const ShellPart& part) {
+  const loads::LoadCase& own = inputs.load_cases[load_case];
+  for (std::size_t k = 0; k < load_case; ++k) {
+    if (inputs.load_cases[k].supports == own.supports) {
+      return part.cases[k].system;
+    }
+  }
+  return std::make_shared<shell::ShellSystem>(part.mesh, part.sections,
+                                              node_supports(part, own));
+}
+
+/// |reactions + loads| over the sum of |loads|, nodal forces all of them.
+double imbalance(const VectorX& forces, const VectorX& reactions) {
+  Vec3 left = Vec3::Zero();
+  double all = 0.0;
+  for (Eigen::Index i = 0; i < forces.size(); i += 6) {
+    left += forces.segment<3>(i) + reactions.segment<3>(i);
+    all += forces.segment<3>(i).norm();
+  }
+  return all > 0.0 ? left.norm() / all : 0.0;
+}
+
+void solve_case(const loads::LoadCase& load_case, ShellPart& part,
+                ShellCase& own, equations::ElasticSolution& solution) {
   equations::ElasticReport& report = solution.report;
-  report.solver = "cholmod";
+  const Timer timer;
+  own.actions = shell_actions(part, load_case);
+  const shell::ShellSolution found = own.system->solve(own.actions.loads);
+  own.displacement = found.displacement;
+  const VectorX forces =
+      shell::nodal_forces(part.mesh, part.sections, own.actions.loads);
+  // Reactions of what is free are the residual.
+  const double size = forces.norm();
+  const double left = own.system->freedom().restrict(found.reaction).norm();
+  report.residual = std::max(report.residual, size > 0.0 ? left / size : left);
+  if (solution.displacements.empty()) {
+    report.dofs = own.system->freedom().unknowns();
+    report.strain_energy = found.strain_energy;
+    report.reaction_imbalance = imbalance(forces, found.reaction);
+  }
+  solution.displacements.push_back(displacements_of(found.displacement));
+  solution.reactions.push_back(displacements_of(found.reaction));
+  report.solve_seconds += timer.seconds();
+}
+
+}  // namespace
+
+equations::ElasticSolution solve_shell(const case_data::EvaluatedCase& inputs,
+                                       ShellPart& part) {
+  equations::ElasticSolution solution;
+  solution.report.solver = "cholmod";
   part.cases.resize(inputs.load_cases.size());
   try {
-    for (std::size_t k = 0; k < inputs.load_cases.size(); ++k) {
-      const loads::LoadCase& load_case = inputs.load_cases[k];
-      responses::ShellCase& own = part.cases[k];
+    for (std::size_t k = 0; k < part.cases.size(); ++k) {
       const Timer setup;
-      for (std::size_t other = 0; other < k && !own.system; ++other) {
-        if (inputs.load_cases[other].supports == load_case.supports) {
-          own.system = part.cases[other].system;
-        }
-      }
-      if (!own.system) {
-        own.system = std::make_shared<shell::ShellSystem>(
-            part.mesh, part.sections, node_supports(part, load_case));
-      }
-      report.setup_seconds += setup.seconds();
-      const Timer solve;
-      own.actions = responses::shell_actions(part, load_case);
-      const shell::ShellSolution found = own.system->solve(own.actions.loads);
-      report.solve_seconds += solve.seconds();
-      own.displacement = found.displacement;
-      solution.displacements.push_back(
-          responses::displacements_of(found.displacement));
-      solution.reactions.push_back(responses::displacements_of(found.reaction));
-      // Reactions of what is free are the residual.
-      const VectorX f =
-          shell::nodal_forces(part.mesh, part.sections, own.actions.loads);
-      const double size = f.norm();
-      const double left = own.system->freedom().restrict(found.reaction).norm();
-      report.residual =
-          std::max(report.residual, size > 0.0 ? left / size : left);
-      if (k == 0) {
-        report.dofs = own.system->freedom().unknowns();
-        report.strain_energy = found.strain_energy;
-        Vec3 sum = Vec3::Zero();
-        double all = 0.0;
-        for (Eigen::Index i = 0; i < f.size(); i += 6) {
-          sum += f.segment<3>(i) + found.reaction.segment<3>(i);
-          all += f.segment<3>(i).norm();
-        }
-        report.reaction_imbalance = all > 0.0 ? sum.norm() / all : 0.0;
-      }
+      part.cases[k].system = system_of(inputs, k, part);
+      solution.report.setup_seconds += setup.seconds();
+      solve_case(inputs.load_cases[k], part, part.cases[k], solution);
     }
   } catch (const SolverError& error) {
     solution.failure = Failure{FailureKind::SolverFailed, error.what()};
@@ -272,4 +292,4 @@ equations::ElasticSolution solve_shell(const case_data::EvaluatedCase& inputs,
   return solution;
 }
 
-}  // namespace meniscus::forward
+}  // namespace meniscus::shells

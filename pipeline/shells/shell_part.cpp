@@ -1,4 +1,4 @@
-#include "pipeline/responses/shell_part.h"
+#include "pipeline/shells/shell_part.h"
 
 #include <algorithm>
 
@@ -10,7 +10,7 @@
 #include "fea/loads/loads.h"
 #include "fea/supports/surface_load_gradient.h"
 
-namespace meniscus::responses {
+namespace meniscus::shells {
 
 namespace {
 
@@ -224,4 +224,4 @@ VectorX with_rotations(const VectorX& three) {
   return six;
 }
 
-}  // namespace meniscus::responses
+}  // namespace meniscus::shells

@@ -13,7 +13,7 @@
 #include "fea/shell/shell_stress.h"
 #include "fea/shell/shell_system.h"
 
-namespace meniscus::responses {
+namespace meniscus::shells {
 
 /// A total force, spread evenly along a rim.
 struct RimForce {
@@ -96,4 +96,4 @@ VectorX displacements_of(const VectorX& six);
 VectorX rotations_of(const VectorX& six);
 VectorX with_rotations(const VectorX& three);
 
-}  // namespace meniscus::responses
+}  // namespace meniscus::shells

@@ -252,8 +252,8 @@ picture::PictureSurface part_surface(const case_data::Case& input,
   using W = shell::WallStress;
   const std::vector<double> nodal =
       fields.shell
-          ? responses::nodal_von_mises(*fields.shell, load_case,
-                                       {&W::negative, &W::middle, &W::positive})
+          ? shells::nodal_von_mises(*fields.shell, load_case,
+                                    {&W::negative, &W::middle, &W::positive})
           : stress::nodal_stress(fields.mesh,
                                  fields.stresses[load_case].recovered)
                 .von_mises;
