@@ -197,8 +197,18 @@ bool drawable(const SurfaceMesh& mesh, int facet) {
 void write_vtu(const fs::path& path, const TetMesh& mesh,
                const MeshFields& fields) {
   check_ids(mesh.elements, mesh.nodes.size(), path);
+  check_ids(mesh.faces, mesh.nodes.size(), path);
   vtkNew<vtkUnstructuredGrid> grid;
   grid->SetPoints(make_points(mesh.nodes));
+  if (mesh.elements.empty()) {
+    grid->SetCells(mesh.order == 1 ? VTK_TRIANGLE : VTK_QUADRATIC_TRIANGLE,
+                   make_cells(mesh.faces, mesh.nodes_per_face()));
+    add_ints(grid, "surface", mesh.face_label, path);
+    add_texts(grid->GetFieldData(), "surface_names", mesh.labels);
+    add_fields(grid, fields, path);
+    write<vtkXMLUnstructuredGridWriter>(path, grid);
+    return;
+  }
   grid->SetCells(mesh.order == 1 ? VTK_TETRA : VTK_QUADRATIC_TETRA,
                  make_cells(mesh.elements, mesh.nodes_per_element()));
   add_ints(grid, "region", mesh.element_region, path);

@@ -33,7 +33,8 @@ struct MeshFields {
   std::vector<Field> numbers = {};
 };
 
-/// Tetrahedra with the cell data `region`.
+/// Tetrahedra with the cell data `region`; of a mesh without any its faces,
+/// with `surface` as in write_vtp().
 void write_vtu(const std::filesystem::path& path, const TetMesh& mesh,
                const MeshFields& fields = {});
 

@@ -58,7 +58,8 @@ py::array gradient_of(const EvaluationStage& self, const py::object& names) {
   DesignWork& work = *self.work;
   const std::vector<int> wanted = wanted_of(work.input(), names);
   work.require(Stage::Responses);
-  if (work.staged().adjoint.elastic.empty()) {
+  if (work.staged().adjoint.elastic.empty() &&
+      work.staged().fields.shell == nullptr) {
     throw InvalidInput(
         "this design was evaluated without its stiffness; evaluate it with "
         "keep='all' for gradients");

@@ -138,6 +138,11 @@ const QuadraticSurface& DesignWork::surface() {
 
 const std::vector<forward::PartStress>& DesignWork::stresses() {
   require(Stage::Solution);
+  if (staged_.fields.shell) {
+    throw InvalidInput(
+        "a shell has no stress inside; a run's part.vtu has it at both faces, "
+        "and max_von_mises is its peak");
+  }
   const std::lock_guard lock(mutex_);
   if (!stresses_) {
     stresses_ = forward::part_stresses(

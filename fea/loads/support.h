@@ -30,6 +30,8 @@ struct Support {
   /// Of Components: what the fixed ones are held at, along the same axes;
   /// without it 0 [length]. Whoever may ever enforce one gives it, if only 0.
   std::optional<Vec3> displacement = {};
+  /// Of shells: rotations about the same axes, held at 0.
+  std::array<bool, 3> fix_rotation = {};
 
   bool operator==(const Support&) const = default;
 };

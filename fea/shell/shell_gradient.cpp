@@ -237,10 +237,10 @@ void add_edge_gradient(const ShellMesh& mesh, const EdgeLoad& load,
 
 }  // namespace
 
-ShellGradient residual_gradient(const ShellMesh& mesh,
-                                const std::vector<Section>& sections,
-                                const ShellLoads& loads, const VectorX& v,
-                                const VectorX& u) {
+ShellGradient residual_gradient(
+    const ShellMesh& mesh, const std::vector<Section>& sections,
+    const ShellLoads& loads, const VectorX& v, const VectorX& u,
+    const std::vector<Eigen::Vector2d>* on_bubbles) {
   check_shell(mesh, sections);
   check_loads(mesh, loads);
   const auto length = static_cast<Eigen::Index>(6 * mesh.nodes.size());
@@ -266,10 +266,14 @@ ShellGradient residual_gradient(const ShellMesh& mesh,
           return {Eigen::Map<const FacetField>(own.data()),
                   bubble_rotation(K, forces, own)};
         };
-        parts[k] = facet_gradient(
-            {facet, loads, acting[k], field(v, WholeVector::Zero()),
-             field(u, facet_forces(facet, loads, acting[k]))},
-            tape);
+        WholeVector on_v = WholeVector::Zero();
+        if (on_bubbles != nullptr) {
+          on_v.tail<2>() = (*on_bubbles)[k];
+        }
+        parts[k] =
+            facet_gradient({facet, loads, acting[k], field(v, on_v),
+                            field(u, facet_forces(facet, loads, acting[k]))},
+                           tape);
       });
   ShellGradient gradient;
   gradient.by_nodes.assign(mesh.nodes.size(), Vec3::Zero());
@@ -289,6 +293,18 @@ ShellGradient residual_gradient(const ShellMesh& mesh,
     gradient.value += v.dot(loads.nodal);
   }
   return gradient;
+}
+
+ShellGradient shell_mass(const ShellMesh& mesh,
+                         const std::vector<Section>& sections) {
+  const auto count = static_cast<Eigen::Index>(6 * mesh.nodes.size());
+  VectorX up = VectorX::Zero(count);
+  for (Eigen::Index i = 0; i < count; i += 6) {
+    up[i] = 1.0;
+  }
+  ShellLoads weight;
+  weight.gravity = Vec3::UnitX();
+  return residual_gradient(mesh, sections, weight, up, VectorX::Zero(count));
 }
 
 }  // namespace meniscus::shell

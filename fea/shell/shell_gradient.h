@@ -21,9 +21,16 @@ struct ShellGradient {
 /// change, v = u. Exact, by a tape over each facet (core/math/taped.h); the
 /// same bits for any number of threads. Throws as ShellSystem and
 /// nodal_forces() do, and InvalidInput for vectors of another length.
-ShellGradient residual_gradient(const ShellMesh& mesh,
-                                const std::vector<Section>& sections,
-                                const ShellLoads& loads, const VectorX& v,
-                                const VectorX& u);
+/// `on_bubbles`: forces on each facet's bubble of v, as of a functional that
+/// looks at the bubbles of u; null: none.
+ShellGradient residual_gradient(
+    const ShellMesh& mesh, const std::vector<Section>& sections,
+    const ShellLoads& loads, const VectorX& v, const VectorX& u,
+    const std::vector<Eigen::Vector2d>* on_bubbles = nullptr);
+
+/// Mass with its derivatives: the work of a unit of weight on a unit of
+/// displacement. Throws as residual_gradient().
+ShellGradient shell_mass(const ShellMesh& mesh,
+                         const std::vector<Section>& sections);
 
 }  // namespace meniscus::shell

@@ -429,6 +429,25 @@ void check_flush(const Case& input, const WallEntry& wall,
   }
 }
 
+/// Tells of a thickness that cannot hold on its films.
+void check_thickness(const Case& input, const EvaluatedCase& inputs,
+                     const walls::WallSpec& wall, const PlaceQuantity& from,
+                     const CaseValues& values) {
+  const std::vector<std::string> curves = curves_under(input, wall.films);
+  const std::size_t before = values.problems().size();
+  if (!check_rim_shapes(input, wall, from, values)) {
+    check_on_curves(input, inputs.film_system, curves, from, wall.thickness,
+                    values);
+    return;
+  }
+  for (const bool largest : {false, true}) {
+    if (values.problems().size() == before) {
+      check_on_curves(input, inputs.film_system, curves, from,
+                      at_extreme(wall.thickness, largest), values);
+    }
+  }
+}
+
 /// Tells of expressions of place that cannot hold on their films.
 void check_places(const Case& input, const EvaluatedCase& inputs,
                   const CaseValues& values) {
@@ -440,22 +459,13 @@ void check_places(const Case& input, const EvaluatedCase& inputs,
     }
   }
   for (std::size_t k = 0; k < input.walls.size(); ++k) {
-    const walls::WallSpec& wall = inputs.walls[k];
-    const PlaceQuantity& from = input.walls[k].thickness;
-    const std::vector<std::string> curves = curves_under(input, wall.films);
-    const std::size_t before = values.problems().size();
     check_flush(input, input.walls[k], inputs.film_system, values);
-    if (!check_rim_shapes(input, wall, from, values)) {
-      check_on_curves(input, inputs.film_system, curves, from, wall.thickness,
-                      values);
-      continue;
-    }
-    for (const bool largest : {false, true}) {
-      if (values.problems().size() == before) {
-        check_on_curves(input, inputs.film_system, curves, from,
-                        at_extreme(wall.thickness, largest), values);
-      }
-    }
+    check_thickness(input, inputs, inputs.walls[k], input.walls[k].thickness,
+                    values);
+  }
+  for (std::size_t k = 0; k < input.shells.size(); ++k) {
+    check_thickness(input, inputs, inputs.shells[k], input.shells[k].thickness,
+                    values);
   }
 }
 
@@ -473,6 +483,13 @@ Inputs inputs_of(const Case& input, const CaseValues& values) {
                          .flush = wall.flush,
                          .region = wall.region};
     result.walls.push_back(std::move(spec));
+  }
+  for (const ShellEntry& shell : input.shells) {
+    result.shells.push_back({.name = shell.name,
+                             .films = shell.films,
+                             .thickness = values.place_field(shell.thickness),
+                             .side = shell.side,
+                             .fillet = {}});
   }
   for (const BodyEntry& body : solid_bodies(input)) {
     result.materials.push_back(material_of(
@@ -515,6 +532,18 @@ std::vector<BodyEntry> solid_bodies(const Case& input) {
                        .line = wall.line,
                        .enclosure_line = wall.line});
     }
+  }
+  if (!solid.empty()) {
+    return solid;
+  }
+  for (const ShellEntry& shell : input.shells) {
+    solid.push_back({.name = shell.name,
+                     .enclosed_by = shell.films,
+                     .volume = {},
+                     .pressure = {},
+                     .material = shell.material,
+                     .line = shell.line,
+                     .enclosure_line = shell.line});
   }
   return solid;
 }

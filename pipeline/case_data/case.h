@@ -55,6 +55,7 @@ struct Case {
   std::vector<BodyEntry> bodies;
   std::vector<FilletEntry> fillets;
   std::vector<WallEntry> walls;
+  std::vector<ShellEntry> shells;
   std::vector<ShapeEntry> shapes;
   std::vector<FieldEntry> fields;
   std::vector<SpineEntry> spines;
@@ -79,7 +80,7 @@ struct Case {
 
 /// The bodies that are not void, in order: the regions of the mesh. Without
 /// such bodies the walls that have a material, one for each set of walls that
-/// meet, named after its first.
+/// meet, named after its first; without these the shells.
 std::vector<BodyEntry> solid_bodies(const Case& input);
 
 /// What a response depends on beside fields.
@@ -104,6 +105,7 @@ struct StageInputs {
 
   films::FilmSystem film_system;
   std::vector<walls::WallSpec> walls;
+  std::vector<walls::WallSpec> shells;
   std::vector<element::Material>
       materials;  // one per body that is solid, in order
   std::vector<loads::LoadCase> load_cases;

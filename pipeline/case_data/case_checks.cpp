@@ -66,11 +66,15 @@ void check_use(const Case& input, CaseProblems& problems) {
     used_surfaces.insert(wall.films.begin(), wall.films.end());
     used_materials.insert(wall.material);
   }
+  for (const ShellEntry& shell : input.shells) {
+    used_surfaces.insert(shell.films.begin(), shell.films.end());
+    used_materials.insert(shell.material);
+  }
   for (const FilmEntry& film : input.films) {
     used_curves.insert(film.spec.curves.begin(), film.spec.curves.end());
     if (used_surfaces.count(film.spec.name) == 0) {
       problems.warn(film.line, fmt::format("film '{}' encloses no body and is "
-                                           "no wall",
+                                           "no wall or shell",
                                            film.spec.name));
     }
   }
@@ -687,6 +691,8 @@ std::vector<std::string> surface_names(const Case& input) {
   }
   const std::vector<std::string> walls = wall_surface_names(input);
   names.insert(names.end(), walls.begin(), walls.end());
+  const std::vector<std::string> shells = shell_surface_names(input);
+  names.insert(names.end(), shells.begin(), shells.end());
   return names;
 }
 
@@ -796,6 +802,53 @@ void check_joined_films(const Case& input, CaseProblems& problems) {
   }
 }
 
+namespace {
+
+bool is_among_films(const FilmEntry& film,
+                    const std::vector<std::string>& films) {
+  return std::count(films.begin(), films.end(), film.spec.name) > 0;
+}
+
+/// The film's back and its rims, where it has a thickness; none at curves that
+/// are of several, as `uses` says, and of those that it does not know all.
+void add_sides(const Case& input, const FilmEntry& film,
+               const std::set<std::string>& held,
+               const std::map<std::string, int>& uses,
+               std::vector<std::string>& names) {
+  names.push_back(film.spec.name + "/back");
+  for (const std::string& curve : film.spec.curves) {
+    const bool is_free = std::any_of(
+        input.curves.begin(), input.curves.end(),
+        [&](const CurveEntry& c) { return c.free && c.name == curve; });
+    const auto known = uses.find(curve);
+    const bool is_own = known == uses.end() || known->second == 1;
+    if (is_own && !is_free && !slides_at(input, curve)) {
+      names.push_back(film.spec.name + "/rim:" + curve);
+    }
+    for (const CurveEntry& name : input.curves) {
+      if (!held.contains(name.name) &&
+          input.sharing_sides.contains({curve, name.name})) {
+        names.push_back(film.spec.name + "/rim:" + name.name);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> shell_surface_names(const Case& input) {
+  const std::set<std::string> held = held_curves(input);
+  std::vector<std::string> names;
+  for (const ShellEntry& shell : input.shells) {
+    for (const FilmEntry& film : input.films) {
+      if (is_among_films(film, shell.films)) {
+        add_sides(input, film, held, {}, names);
+      }
+    }
+  }
+  return names;
+}
+
 std::vector<std::string> wall_surface_names(const Case& input) {
   std::map<std::string, int> uses;  // of curves by films with walls
   for (const WallEntry& wall : input.walls) {
@@ -807,25 +860,10 @@ std::vector<std::string> wall_surface_names(const Case& input) {
   std::vector<std::string> names;
   for (const WallEntry& wall : input.walls) {
     for (const FilmEntry& film : input.films) {
-      if (std::count(wall.films.begin(), wall.films.end(), film.spec.name) ==
-          0) {
+      if (!is_among_films(film, wall.films)) {
         continue;
       }
-      names.push_back(film.spec.name + "/back");
-      for (const std::string& curve : film.spec.curves) {
-        const bool is_free = std::any_of(
-            input.curves.begin(), input.curves.end(),
-            [&](const CurveEntry& c) { return c.free && c.name == curve; });
-        if (uses[curve] == 1 && !is_free && !slides_at(input, curve)) {
-          names.push_back(film.spec.name + "/rim:" + curve);
-        }
-        for (const CurveEntry& name : input.curves) {
-          if (!held.contains(name.name) &&
-              input.sharing_sides.contains({curve, name.name})) {
-            names.push_back(film.spec.name + "/rim:" + name.name);
-          }
-        }
-      }
+      add_sides(input, film, held, uses, names);
       for (const CapEntry& cap : input.caps) {
         if (cap.wetted && cap.symmetry < 0 &&
             share(cap.spec.curves(), film.spec.curves)) {

@@ -45,10 +45,13 @@ SourceLine line_of_start(const Case& input, const std::string& message);
 bool has_facets(const Case& input);
 bool has_facets(const Case& input, const BodyEntry& body);
 
-/// Films and solids, backs and rims of walls.
+/// Films and solids, backs and rims of walls and shells.
 std::vector<std::string> surface_names(const Case& input);
 /// Of walls, beside their films.
 std::vector<std::string> wall_surface_names(const Case& input);
+
+/// Of shells, beside their films.
+std::vector<std::string> shell_surface_names(const Case& input);
 
 /// The curves that the films of a wall end on, once for each film.
 std::vector<std::string> curves_of_wall(const Case& input,

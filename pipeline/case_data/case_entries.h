@@ -243,6 +243,16 @@ struct WallEntry {
   SourceLine line = 0;
 };
 
+/// Films solved on their own facets.
+struct ShellEntry {
+  std::string name;
+  std::vector<std::string> films;
+  PlaceQuantity thickness;
+  walls::WallSide side = walls::WallSide::Both;
+  int material = 0;  // index into materials
+  SourceLine line = 0;
+};
+
 struct FilletEntry {
   std::string name;
   std::vector<std::string> curves;

@@ -46,6 +46,10 @@ class Adjoint {
  private:
   std::vector<char> needed(const std::vector<int>& wanted) const;
   bool solve_adjoints(DesignGradient& result);
+  void solve_shell_adjoints(DesignGradient& result);
+  void through_shell(Backward& backward) const;
+  double load_rate(const Backward& backward, std::size_t k,
+                   const case_data::CaseRates& rates) const;
   bool materials_move() const;
   void through_materials(Backward& backward) const;
   void through_equations(const responses::CasePartials& partials,
@@ -82,8 +86,66 @@ std::vector<char> Adjoint::needed(const std::vector<int>& wanted) const {
   return result;
 }
 
+/// 6 per node, by the factors that the solutions had.
+void Adjoint::solve_shell_adjoints(DesignGradient& result) {
+  for (Backward& backward : backwards_) {
+    for (const responses::CasePartials& partials : backward.partials.cases) {
+      const shells::ShellCase& solved =
+          in_.context.shell
+              ->cases[static_cast<std::size_t>(partials.load_case)];
+      BackwardCase& back = backward.cases.emplace_back();
+      back.load_case = partials.load_case;
+      if (partials.self_adjoint != 0.0) {
+        back.lambda = partials.self_adjoint * solved.displacement;
+        continue;
+      }
+      const VectorX& right = partials.by_displacement;
+      back.lambda =
+          solved.system->solve_forces(right.size() == solved.displacement.size()
+                                          ? right
+                                          : shells::with_rotations(right));
+      ++result.solves;
+    }
+  }
+}
+
+/// Nodes and thicknesses to the film's points and the thicknesses' numbers.
+void Adjoint::through_shell(Backward& backward) const {
+  const shells::ShellPart& shell = *in_.context.shell;
+  responses::ResponsePartials& partials = backward.partials;
+  partials.by_nodes.resize(shell.mesh.nodes.size(), Vec3::Zero());
+  partials.by_thickness.resize(shell.mesh.facets.size(), Vec3::Zero());
+  for (const BackwardCase& back : backward.cases) {
+    const auto c = static_cast<std::size_t>(back.load_case);
+    const shell::ShellGradient state = shells::work_gradient(
+        shell, c, back.lambda, shell.cases[c].displacement);
+    for (std::size_t i = 0; i < state.by_nodes.size(); ++i) {
+      partials.by_nodes[i] += state.by_nodes[i];
+    }
+    for (std::size_t f = 0; f < state.by_thickness.size(); ++f) {
+      partials.by_thickness[f] += state.by_thickness[f];
+    }
+  }
+  const shells::ShellModel& model = *in_.part.shells;
+  Points by_film =
+      model.to_film(partials.by_nodes, in_.context.film_state->points.size());
+  if (partials.film.points.empty()) {
+    partials.film.points = std::move(by_film);
+  } else {
+    for (std::size_t i = 0; i < by_film.size(); ++i) {
+      partials.film.points[i] += by_film[i];
+    }
+  }
+  backward.by_thickness =
+      model.to_numbers(in_.context.inputs, partials.by_thickness);
+}
+
 /// All that are open in one call, which solves load cases held alike in step.
 bool Adjoint::solve_adjoints(DesignGradient& result) {
+  if (in_.context.shell != nullptr) {
+    solve_shell_adjoints(result);
+    return true;
+  }
   const equations::ElasticSolution& solution = in_.context.solution;
   std::vector<BackwardCase*> open;
   std::vector<int> load_cases;
@@ -209,6 +271,9 @@ void Adjoint::through_equations(const responses::CasePartials& partials,
 }
 
 void Adjoint::through_mesh(Backward& backward) const {
+  if (in_.context.shell != nullptr) {
+    return through_shell(backward);
+  }
   const responses::ResponseContext& fields = in_.context;
   responses::ResponsePartials& partials = backward.partials;
   for (std::size_t k = 0; k < backward.cases.size(); ++k) {
@@ -237,6 +302,23 @@ void Adjoint::through_film() {
   }
 }
 
+/// By the numbers of one of its load cases.
+double Adjoint::load_rate(const Backward& backward, std::size_t k,
+                          const case_data::CaseRates& rates) const {
+  const BackwardCase& back = backward.cases[k];
+  const auto c = static_cast<std::size_t>(back.load_case);
+  if (in_.context.shell == nullptr) {
+    return loads::load_rate(*back.loads, rates.load_cases[c]);
+  }
+  VectorX v = back.lambda;
+  if (const VectorX& by_forces = backward.partials.cases[k].by_forces;
+      by_forces.size() > 0) {
+    v += by_forces;
+  }
+  return shells::work_rate(*in_.context.shell, in_.context.inputs.load_cases[c],
+                           rates.load_cases[c], v);
+}
+
 /// The response's derivative by the variable that `rates` belong to.
 double Adjoint::rate(const Backward& backward,
                      const case_data::CaseRates& rates) const {
@@ -250,8 +332,8 @@ double Adjoint::rate(const Backward& backward,
     const loads::LoadCase& held = rates.load_cases[entry(backward).load_case];
     sum += partials.by_pin_point[p].dot(held.pins[p].point);
   }
-  for (const BackwardCase& back : backward.cases) {
-    sum += loads::load_rate(*back.loads, rates.load_cases[back.load_case]);
+  for (std::size_t k = 0; k < backward.cases.size(); ++k) {
+    sum += load_rate(backward, k, rates);
   }
   for (std::size_t k = 0; k < backward.by_density.size(); ++k) {
     sum += backward.by_density[k] * rates.materials[k].density;
@@ -260,7 +342,9 @@ double Adjoint::rate(const Backward& backward,
     sum += backward.by_modulus[k] * rates.materials[k].youngs_modulus;
   }
   for (std::size_t w = 0; w < backward.by_thickness.size(); ++w) {
-    sum += backward.by_thickness[w].dot(rates.walls[w].thickness.numbers);
+    const walls::WallSpec& wall =
+        in_.context.shell != nullptr ? rates.shells[w] : rates.walls[w];
+    sum += backward.by_thickness[w].dot(wall.thickness.numbers);
   }
   for (Eigen::Index f = 0; f < backward.by_radius.size(); ++f) {
     const auto k = static_cast<std::size_t>(f);

@@ -19,6 +19,9 @@ namespace {
 /// As many as the responses take.
 std::optional<Failure> find_modes(const FrozenPart& part,
                                   StagedDesign& staged) {
+  if (part.shells) {
+    return std::nullopt;  // none takes any
+  }
   const StageMeter meter;
   responses::ResponseModes& modes = staged.fields.response_modes;
   modes = responses::find_response_modes({.input = part.input,
@@ -74,7 +77,32 @@ bool settle_film(const FrozenPart& part, const VectorX& design,
   return settle_film(part.input, *part.film, design, part.monitor, staged);
 }
 
+namespace {
+
+bool move_shell(const FrozenPart& part, StagedDesign& staged) {
+  const StageMeter meter;
+  Evaluation& result = staged.evaluation;
+  EvaluationFields& fields = staged.fields;
+  fields.surface = part.shells->surface(staged.adjoint.film.points);
+  result.tet = figures_of(fields.surface);
+  try {
+    fields.shell = part.shells->part(fields.inputs, staged.adjoint.film.points);
+    fields.mesh = fields.shell->skin;
+  } catch (const InvalidInput& error) {  // a thickness that is not above 0
+    result.failure = Failure{FailureKind::NotANumber, error.what()};
+  } catch (const MeshError& error) {
+    result.failure = Failure{FailureKind::ElementsInverted, error.what()};
+  }
+  meter.add_to(result.seconds.mesh, result.operations.mesh);
+  return !result.failure;
+}
+
+}  // namespace
+
 bool move_mesh(const FrozenPart& part, StagedDesign& staged) {
+  if (part.shells) {
+    return move_shell(part, staged);
+  }
   Evaluation& result = staged.evaluation;
   const StageMeter meter;
   QuadraticSurface& surface = staged.fields.surface;
@@ -110,10 +138,14 @@ bool solve_elasticity(const FrozenPart& part, KeepStiffness keep,
   const StageMeter meter;
   equations::ElasticSolution& solution = staged.fields.solution;
   try {
-    solution = part.elasticity->solve(
-        staged.fields.mesh, staged.fields.inputs.load_cases,
-        staged.fields.inputs.materials,
-        keep == KeepStiffness::Yes ? &staged.adjoint.elastic : nullptr);
+    solution =
+        part.shells
+            ? shells::solve_shell(staged.fields.inputs, *staged.fields.shell)
+            : part.elasticity->solve(
+                  staged.fields.mesh, staged.fields.inputs.load_cases,
+                  staged.fields.inputs.materials,
+                  keep == KeepStiffness::Yes ? &staged.adjoint.elastic
+                                             : nullptr);
   } catch (const InvalidInput& error) {
     // A load or support that this design's surface cannot take.
     result.failure = Failure{FailureKind::SolverFailed, error.what()};
@@ -134,9 +166,9 @@ bool compute_responses(const FrozenPart& part, StagedDesign& staged) {
   }
   try {
     result.responses = responses::respond(
-        part.input,
-        part.context(fields.inputs, staged.adjoint.film, fields.mesh,
-                     fields.solution, fields.response_modes));
+        part.input, part.context(fields.inputs, staged.adjoint.film,
+                                 fields.mesh, fields.solution,
+                                 fields.response_modes, fields.shell.get()));
   } catch (const InvalidInput& error) {  // an expression of place
     result.failure = Failure{FailureKind::NotANumber, error.what()};
     return false;

@@ -64,7 +64,8 @@ DesignGradient ForwardModel::gradient(const Evaluation& evaluation,
     return design_gradient(
         {*part_,
          part_->context(fields.inputs, adjoint.film, fields.mesh,
-                        fields.solution, fields.response_modes),
+                        fields.solution, fields.response_modes,
+                        fields.shell.get()),
          evaluation.responses, adjoint.elastic},
         responses);
   } catch (const InvalidInput& error) {
@@ -105,6 +106,8 @@ const Evaluation& ForwardModel::frozen() const { return part_->start; }
 
 const frozen::FilmModel& ForwardModel::film() const { return *part_->film; }
 
+bool ForwardModel::has_shells() const { return part_->shells.has_value(); }
+
 const walls::WallModel* ForwardModel::walls() const {
   return part_->walls ? &*part_->walls : nullptr;
 }
@@ -117,6 +120,9 @@ QuadraticSurface ForwardModel::surface(const case_data::EvaluatedCase& inputs,
 SurfaceMesh ForwardModel::boundary(const case_data::EvaluatedCase& inputs,
                                    const Points& film_points) const {
   const auto& walls = part_->walls;
+  if (part_->shells) {
+    return part_->shells->surface(film_points).base;
+  }
   return walls ? walls->fine(film_points, walls->numbers(inputs.walls))
                : part_->film->boundary(part_->rounded(inputs, film_points));
 }

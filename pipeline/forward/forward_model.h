@@ -19,6 +19,7 @@
 #include "pipeline/forward/stage_meter.h"
 #include "pipeline/responses/response_modes.h"
 #include "pipeline/responses/scans.h"
+#include "pipeline/shells/shell_part.h"
 
 namespace meniscus::forward {
 
@@ -73,6 +74,8 @@ struct EvaluationFields {
   QuadraticSurface surface;       // as meshed
   TetMesh mesh;                   // ten-node
   equations::ElasticSolution solution;
+  /// Of a case with shells, whose `mesh` has faces only; else null.
+  std::shared_ptr<shells::ShellPart> shell;
   responses::ResponseModes response_modes;  // that the responses take
   std::vector<PartStress> stresses;    // per load case; found once, at the end
   std::vector<WorstCase> worst_cases;  // behind the load cases; the same
@@ -129,6 +132,8 @@ class ForwardModel {
   /// The film that evaluate() settles first: alone, settle() of a design's
   /// film system costs a hundredth of an evaluation and has the same bits.
   const frozen::FilmModel& film() const;
+
+  bool has_shells() const;
 
   /// Its walls; null for a case without.
   const walls::WallModel* walls() const;

@@ -296,6 +296,18 @@ void adapt(const case_data::EvaluatedCase& inputs, Monitor& monitor,
   part.adaptation = std::move(round);
 }
 
+/// All that is frozen of them are their facets on the film.
+bool freeze_shells(const case_data::EvaluatedCase& inputs, FrozenPart& part) {
+  const StageMeter meter;
+  part.shells.emplace(part.input, inputs, *part.film);
+  const QuadraticSurface surface =
+      part.shells->surface(part.film->reference().points);
+  part.start.tet = figures_of(surface);
+  require_shell_work(surface.base.facets.size(), inputs.fea_edge);
+  meter.add_to(part.start.seconds.mesh, part.start.operations.mesh);
+  return true;
+}
+
 Monitor& monitor_of(const ForwardModelOptions& options) {
   return options.monitor != nullptr ? *options.monitor : silent_monitor();
 }
@@ -305,6 +317,9 @@ bool fill_film(const case_data::EvaluatedCase& inputs,
   Monitor& monitor = monitor_of(options);
   if (!freeze_film(inputs, options, monitor, part)) {
     return false;
+  }
+  if (!inputs.shells.empty()) {
+    return freeze_shells(inputs, part);
   }
   if (!part.input.analysis.adapt) {  // else with the facets that err
     split_facets(tight_facets(inputs, part), part);
@@ -378,6 +393,12 @@ TetFigures figures_of(const TetMesh& mesh,
           .max_dihedral_deg = quality.max_dihedral_deg};
 }
 
+TetFigures figures_of(const QuadraticSurface& surface) {
+  return {.nodes =
+              static_cast<int>(surface.base.points.size() + surface.mid.size()),
+          .elements = static_cast<int>(surface.base.facets.size())};
+}
+
 Points FrozenPart::rounded(const case_data::EvaluatedCase& inputs,
                            const Points& points) const {
   return fillets ? fillets->rounded(points, inputs.film_system) : points;
@@ -385,6 +406,9 @@ Points FrozenPart::rounded(const case_data::EvaluatedCase& inputs,
 
 QuadraticSurface FrozenPart::surface(const case_data::EvaluatedCase& inputs,
                                      const Points& points) const {
+  if (shells) {
+    return shells->surface(points);
+  }
   return walls ? walls->surface(points, walls->numbers(inputs.walls))
                : film->surface(rounded(inputs, points));
 }
@@ -413,9 +437,10 @@ SurfaceGradient FrozenPart::to_surface(const case_data::EvaluatedCase& inputs,
 responses::ResponseContext FrozenPart::context(
     const case_data::EvaluatedCase& inputs, const settle::FilmState& film_state,
     const TetMesh& mesh, const equations::ElasticSolution& solution,
-    const responses::ResponseModes& modes) const {
+    const responses::ResponseModes& modes,
+    const shells::ShellPart* shell) const {
   return {inputs,      mesh,   solution, exclusion.what, &*film,
-          &film_state, &pairs, &scans,   &modes};
+          &film_state, &pairs, &scans,   &modes,         shell};
 }
 
 bool freeze_mesh(const ForwardModelOptions& options, FrozenPart& part) {
@@ -429,6 +454,9 @@ void freeze_part(const ForwardModelOptions& options, FrozenPart& part) {
   const case_data::EvaluatedCase inputs =
       case_data::evaluate(part.input, part.start.design);
   if (!film_and_mesh(inputs, options, part)) {
+    return;
+  }
+  if (part.shells) {
     return;
   }
   Monitor& monitor = monitor_of(options);

@@ -13,10 +13,13 @@
 #include "pipeline/forward/adaptation.h"
 #include "pipeline/forward/forward_model.h"
 #include "pipeline/responses/responses.h"
+#include "pipeline/shells/shell_model.h"
 
 namespace meniscus::forward {
 
 TetFigures figures_of(const TetMesh& mesh, const mesh_tet::TetQuality& quality);
+/// Of shells: their facets.
+TetFigures figures_of(const QuadraticSurface& surface);
 
 /// Derivatives of a number by what makes the part's surface.
 struct SurfaceGradient {
@@ -35,6 +38,8 @@ struct FrozenPart {
   std::optional<frozen::FilmModel> film;
   std::optional<fillets::FilletModel> fillets;  // of a case that has some
   std::optional<walls::WallModel> walls;        // the same
+  std::optional<shells::ShellModel>
+      shells;         // the same; nothing below is then there
   TetMesh base_mesh;  // ten-node, at the initial design
   std::vector<char> curve_edge;
   std::optional<mesh_tet::MeshMotion> motion;
@@ -60,7 +65,8 @@ struct FrozenPart {
       const case_data::EvaluatedCase& inputs,
       const settle::FilmState& film_state, const TetMesh& mesh,
       const equations::ElasticSolution& solution,
-      const responses::ResponseModes& modes) const;
+      const responses::ResponseModes& modes,
+      const shells::ShellPart* shell = nullptr) const;
 };
 
 /// The chain of stages at the initial design of `part.input`, each kept for

@@ -123,8 +123,9 @@ std::string norm_text(const case_data::Case& input, const NormPeak& peak) {
   return fmt::format(
       "  {:<20} is {}, {}; the {} of '{}' is {}{}\n",
       input.responses[static_cast<std::size_t>(peak.response)].name,
-      peak.is_ratio ? "a bound of the nodal peak over what is allowed"
-                    : "a mean over the volume",
+      peak.is_ratio          ? "a bound of the nodal peak over what is allowed"
+      : input.shells.empty() ? "a mean over the volume"
+                             : "a mean over both faces",
       shown(input, peak, peak.value),
       peak.is_ratio ? "largest reading" : "nodal peak", peak.load_case,
       shown(input, peak, peak.peak),

@@ -104,7 +104,8 @@ std::vector<std::string> part_warnings(
           100.0 * largest / size));
     }
   }
-  std::string thin = thin_warning(input, fields.mesh, stress);
+  std::string thin =
+      fields.shell ? "" : thin_warning(input, fields.mesh, stress);
   if (!thin.empty()) {
     warnings.push_back(std::move(thin));
   }

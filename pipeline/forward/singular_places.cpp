@@ -123,7 +123,8 @@ std::vector<stress::SingularEdge> singular_edges_of(
 double growth_of_mean(const case_data::ResponseEntry& response,
                       const EvaluationFields& fields) {
   const bool is_norm = response.kind == case_data::ResponseKind::VonMisesNorm;
-  if (!is_norm && response.kind != case_data::ResponseKind::VonMisesKs) {
+  if ((!is_norm && response.kind != case_data::ResponseKind::VonMisesKs) ||
+      fields.shell) {
     return 0.0;
   }
   // Of both the mean of exp(t): t = power ln s, or sharpness s / scale.

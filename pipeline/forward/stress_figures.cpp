@@ -11,6 +11,7 @@
 #include "core/count_text.h"
 #include "fea/stress/averaged_stress.h"
 #include "pipeline/files/place_json.h"
+#include "pipeline/forward/shell_figures.h"
 #include "pipeline/forward/singular_places.h"
 #include "pipeline/forward/worst_cases.h"
 #include "pipeline/responses/worst_loads.h"
@@ -59,6 +60,9 @@ std::optional<StressFigures::Safety> safety_of(
 
 /// All but how even the stress is.
 StressFigures peaks_of(const EvaluationFields& fields, std::size_t load_case) {
+  if (fields.shell) {
+    return shell_figures(fields, load_case);
+  }
   const auto& materials = fields.inputs.materials;
   const stress::Excluded& excluded = fields.exclusion.what;
   const PartStress& found = fields.stresses[load_case];
@@ -113,6 +117,9 @@ std::optional<StressFigures::Singular> singular_place(
 StressFigures figures_of(const EvaluationFields& fields,
                          std::size_t load_case) {
   StressFigures figures = peaks_of(fields, load_case);
+  if (fields.shell) {
+    return figures;
+  }
   figures.singular = singular_place(fields, load_case);
   figures.uniformity = stress::stress_uniformity(
       fields.mesh, fields.inputs.materials, fields.stresses[load_case].points,
@@ -322,8 +329,10 @@ Json stress_json(const std::vector<StressFigures>& figures) {
         entry["excluded"]["safety_factor"] = safety_json(*f.excluded->safety);
       }
     }
-    entry["von_mises"] = uniformity_json(f.uniformity.von_mises);
-    entry["energy_density"] = uniformity_json(f.uniformity.energy_density);
+    if (f.uniformity) {
+      entry["von_mises"] = uniformity_json(f.uniformity->von_mises);
+      entry["energy_density"] = uniformity_json(f.uniformity->energy_density);
+    }
     json[f.load_case] = std::move(entry);
   }
   return json;

@@ -48,7 +48,8 @@ struct StressFigures {
     double yield_strength = 0.0;  // its [pressure]
   };
   std::optional<Safety> safety;
-  stress::StressUniformity uniformity;  // of the elements that count
+  /// Of the elements that count; none of shells.
+  std::optional<stress::StressUniformity> uniformity;
   /// The same peaks of the zones that do not count, so that nothing is hidden.
   struct Excluded {
     double max_von_mises = 0.0;

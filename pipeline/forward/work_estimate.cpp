@@ -15,8 +15,9 @@ namespace {
 constexpr double kElementsPerCube = 8.2;
 constexpr double kElementsPerFacet = 1.5;
 constexpr double kBytesPerElement = 4200.0;
-constexpr double kMostElements = 1e8;  // numbers of unknowns are int
-constexpr double kSmall = 3e7;         // [byte] not worth a question
+constexpr double kBytesPerFacet = 46000.0;  // docs/performance.md, Shells
+constexpr double kMostElements = 1e8;       // numbers of unknowns are int
+constexpr double kSmall = 3e7;              // [byte] not worth a question
 
 /// "110,000": two digits that count.
 std::string rounded(double count) {
@@ -75,6 +76,20 @@ void require_work(const WorkEstimate& work, double edge) {
       "wrong",
       text_of(work), edge, free / 1e9,
       1.05 * edge * std::cbrt(work.elements / most)));
+}
+
+void require_shell_work(std::size_t facets, double edge) {
+  const auto count = static_cast<double>(facets);
+  const double bytes = kBytesPerFacet * count;
+  const double free = available_memory();
+  if (bytes <= kSmall || bytes <= free) {
+    return;
+  }
+  throw InvalidInput(fmt::format(
+      "the shell needs about {} facets, {:.2g} GB, at edges of {:.4g} "
+      "(resolution.fea), and {:.2g} GB are free; edges of {:.2g} would fit",
+      rounded(count), bytes / 1e9, edge, free / 1e9,
+      1.05 * edge * std::sqrt(bytes / free)));
 }
 
 void require_work(const case_data::Case& input) {

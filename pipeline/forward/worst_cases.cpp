@@ -7,6 +7,7 @@
 
 #include "fea/functionals/nodal_peak.h"
 #include "fea/functionals/stress_criteria.h"
+#include "pipeline/forward/shell_figures.h"
 #include "pipeline/responses/worst_loads.h"
 
 namespace meniscus::forward {
@@ -69,6 +70,9 @@ void find_stresses(const case_data::Case& input, EvaluationFields& fields) {
         responses::combined(fields.solution.displacements, load.first, d));
     fields.solution.reactions.push_back(
         responses::combined(fields.solution.reactions, load.first, d));
+  }
+  if (fields.shell) {
+    return find_shell_stresses(*fields.shell);
   }
   fields.stresses = part_stresses(fields.mesh, fields.inputs, fields.solution);
 }

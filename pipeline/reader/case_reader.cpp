@@ -13,6 +13,7 @@
 #include "pipeline/reader/case_reader_overrides.h"
 #include "pipeline/reader/case_reader_tables.h"
 #include "pipeline/reader/family_members.h"
+#include "pipeline/shells/shell_checks.h"
 
 namespace meniscus::reader {
 
@@ -43,7 +44,11 @@ void read_content(const std::string& text, case_data::CaseProblems& problems,
         apply_overrides(root, result.overrides, problems);
     let_parameters_scatter(root, overridden);
     read_tables(root, overridden, problems, result);
+    const bool is_read = problems.empty();
     case_data::check_case(result, problems);
+    if (is_read) {
+      shells::check_shells(result, problems);
+    }
     std::string files;
     for (const case_data::CaseFile& file : result.files) {
       files += fmt::format("file {}:{}", file.text.size(), file.text);

@@ -105,9 +105,9 @@ namespace {
 /// Tables whose models follow the order of their entries.
 const std::set<std::string>& ordered_tables() {
   static const std::set<std::string> names = {
-      "design",     "curves",    "films",  "solids", "bodies",
-      "fillets",    "walls",     "fields", "spines", "materials",
-      "load_cases", "responses", "bolts"};
+      "design",    "curves",     "films",     "solids", "bodies",
+      "fillets",   "walls",      "shells",    "fields", "spines",
+      "materials", "load_cases", "responses", "bolts"};
   return names;
 }
 

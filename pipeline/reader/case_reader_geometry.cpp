@@ -170,7 +170,7 @@ void read_bodies(CaseContext& context, const toml::table& root,
     result.bodies.push_back(std::move(body));
   }
   if (!result.bodies.empty() && case_data::solid_bodies(result).empty() &&
-      !root.contains("walls")) {
+      !root.contains("walls") && !root.contains("shells")) {
     context.problems.add(result.bodies.front().line,
                          "all bodies are void; one must have a material, or "
                          "there is no part");
@@ -189,7 +189,7 @@ void read_geometry(CaseContext& context, const toml::table& root,
   read_solids(context, solids, result);
   if (context.problems.empty()) {
     case_data::merge_curves(result, context.problems);
-    if (root.contains("walls")) {
+    if (root.contains("walls") || root.contains("shells")) {
       result.sharing_sides = case_data::curves_that_share_sides(result);
     }
   }

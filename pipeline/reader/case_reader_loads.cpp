@@ -48,9 +48,12 @@ void read_fix(CaseContext& context, const CaseTable& table,
               case_data::SupportEntry& entry) {
   loads::Support& support = entry.support;
   const auto fix = table.text("fix");
-  refuse_foreign(context, table, {"at", "fix_rotation", "rotation"},
+  refuse_foreign(context, table, {"at", "rotation"},
                  "a support by nodes (by = \"rigid\" has it)");
+  support.fix_rotation =
+      components_of(context, table, "fix_rotation", "\"xyz\"");
   if (!fix) {
+    support.axes = table.axes("axes");
     return;
   }
   if (*fix == "normal" || *fix == "symmetry") {
@@ -118,7 +121,8 @@ void read_support(CaseContext& context, const CaseTable& table,
   const loads::Surfaces surfaces = surfaces_on(context, table, result);
   const bool springs = table.has("stiffness") || table.has("normal_stiffness");
   const bool rigid = table.choice("by") == "rigid";
-  const bool fixes = table.has("fix") || (rigid && table.has("fix_rotation"));
+  const bool turns = rigid || !result.shells.empty();
+  const bool fixes = table.has("fix") || (turns && table.has("fix_rotation"));
   if (fixes == springs) {
     context.problems.add(
         table.line(),
@@ -146,6 +150,10 @@ void read_support(CaseContext& context, const CaseTable& table,
     case_data::SupportEntry entry;
     entry.line = table.line();
     read_fix(context, table, entry);
+    if (!turns) {
+      refuse_foreign(context, table, {"fix_rotation"},
+                     "a support by nodes (by = \"rigid\" and shells have it)");
+    }
     for (const std::string& surface : surfaces) {
       entry.support.surface = surface;
       load_case.supports.push_back(entry);
@@ -545,12 +553,21 @@ TableSpec load_table() {
 
 namespace {
 
+/// Films of walls and shells.
+std::vector<std::string> films_of_walls(const case_data::Case& input) {
+  std::vector<std::string> films;
+  for (const case_data::WallEntry& wall : input.walls) {
+    films.insert(films.end(), wall.films.begin(), wall.films.end());
+  }
+  for (const case_data::ShellEntry& shell : input.shells) {
+    films.insert(films.end(), shell.films.begin(), shell.films.end());
+  }
+  return films;
+}
+
 bool is_of_wall(const case_data::Case& input, const std::string& film) {
-  return std::any_of(input.walls.begin(), input.walls.end(),
-                     [&](const case_data::WallEntry& wall) {
-                       return std::find(wall.films.begin(), wall.films.end(),
-                                        film) != wall.films.end();
-                     });
+  const std::vector<std::string> films = films_of_walls(input);
+  return std::find(films.begin(), films.end(), film) != films.end();
 }
 
 /// A wall's sides by where they lie: FILM/outside is FILM, FILM/inside its
@@ -606,10 +623,8 @@ std::string known_surface(CaseContext& context, const CaseTable& table,
     bodies += one;
     solid += body.material == case_data::kVoid ? 0 : one;
   }
-  for (const case_data::WallEntry& wall : result.walls) {
-    for (const std::string& film : wall.films) {
-      solid += film == surface || surface.starts_with(film + "/") ? 1 : 0;
-    }
+  for (const std::string& film : films_of_walls(result)) {
+    solid += film == surface || surface.starts_with(film + "/") ? 1 : 0;
   }
   if (std::find(known.begin(), known.end(), surface) == known.end()) {
     context.problems.unknown(table.line(key), "surface", surface,

@@ -14,7 +14,8 @@ namespace meniscus::reader {
 namespace {
 
 void check_top(CaseContext& context, const toml::table& root) {
-  const bool only_walls = root.contains("walls") && !root.contains("bodies");
+  const bool only_walls = (root.contains("walls") || root.contains("shells")) &&
+                          !root.contains("bodies");
   std::vector<std::string> known;
   for (const TableSpec& spec : case_tables()) {
     const std::string name = spec.name;
@@ -285,6 +286,7 @@ void read_tables(const toml::table& root, const OverriddenNodes& overridden,
   read_geometry(context, root, result);
   check_rim_shapes(context, result);
   read_walls(context, root, result);
+  read_shells(context, root, result);
   read_fillets(context, root, result);
   read_fields(context, root, result);
   read_spines(context, root, result);

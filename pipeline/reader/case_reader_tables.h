@@ -130,10 +130,12 @@ void read_solids(CaseContext& context, const std::vector<CaseTable>& solids,
 void read_geometry(CaseContext& context, const toml::table& root,
                    case_data::Case& result);
 
-/// Walls, fillets, field energies and spines; after the geometry, fillets after
-/// walls.
+/// Walls, shells, fillets, field energies and spines; after the geometry,
+/// fillets after walls.
 void read_walls(CaseContext& context, const toml::table& root,
                 case_data::Case& result);
+void read_shells(CaseContext& context, const toml::table& root,
+                 case_data::Case& result);
 void read_fillets(CaseContext& context, const toml::table& root,
                   case_data::Case& result);
 /// One to three counts, each 1 or more; none without the key, or with a problem

@@ -200,6 +200,52 @@ void read_walls(CaseContext& context, const toml::table& root,
   find_regions(context, result);
 }
 
+TableSpec shell_table() {
+  using D = Dimension;
+  using K = KeyType;
+  return {
+      "shells",
+      true,
+      TableNeed::Optional,
+      "Films analysed as shells, on their own facets: for thicknesses well "
+      "below the films' size",
+      {{"films", K::Names, D::None, true,
+        "the film, or several; where they share a curve they are joined"},
+       {"thickness", K::Field, D::Length, true,
+        "above 0; the film takes it along: of x, y, z where the frozen film "
+        "is"},
+       {"material", K::Name, D::None, true, "isotropic"},
+       {"side", K::Choice, D::None, false,
+        "where the material lies: both sides of the film, all of it inside "
+        "(towards the middle of the film's curves) or outside; both when left "
+        "out",
+        case_data::choices_of(wall_sides())}}};
+}
+
+void read_shells(CaseContext& context, const toml::table& root,
+                 case_data::Case& result) {
+  std::map<std::string, std::string> taken;
+  for (const CaseTable& table : named_tables(context, root, "shells")) {
+    case_data::ShellEntry shell{.name = table.name(), .line = table.line()};
+    shell.films = wall_films(context, table, result, taken);
+    shell.thickness =
+        table.place_quantity("thickness").value_or(case_data::PlaceQuantity{});
+    shell.side = case_data::row_named(wall_sides(),
+                                      table.choice("side").value_or("both"))
+                     .value;
+    shell.material = std::max(0, material_of(context, table, result));
+    if (!result.symmetry.empty()) {
+      context.problems.add(
+          table.line(),
+          fmt::format("{} stands beside [symmetry], which shells do not know "
+                      "yet; hold rims in the plane by fix and fix_rotation, or "
+                      "take [walls]",
+                      table.path()));
+    }
+    result.shells.push_back(std::move(shell));
+  }
+}
+
 namespace {
 
 /// Curves at which films end, by all their names: what lies on another curve

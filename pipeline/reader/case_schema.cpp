@@ -77,6 +77,7 @@ std::vector<TableSpec> make_tables() {
          "part"}}},
       fillet_table(),
       wall_table(),
+      shell_table(),
       shape_table(),
       field_table(),
       spine_table(),
@@ -164,7 +165,8 @@ std::vector<TableSpec> make_tables() {
          "nodes|rigid"},
         {"at", K::Vector, D::Length, false, "of rigid: the point"},
         {"fix_rotation", K::Text, D::None, false,
-         "of rigid: rotations that are held, some of \"xyz\""},
+         "of rigid, and of shells: rotations that are held, some of "
+         "\"xyz\""},
         {"rotation", K::Vector, D::None, false,
          "of rigid: what they are held at, in radians; 0 when left out"},
         {"stiffness", K::ConstantVector, std::nullopt, false,
@@ -209,9 +211,9 @@ std::vector<TableSpec> make_tables() {
 
 bool can_repeat(const std::string& table) {
   static const std::vector<std::string> tables = {
-      "curves",  "films",  "solids",     "bodies",  "fillets",
-      "walls",   "fields", "spines",     "support", "responses",
-      "exclude", "load",   "constraint", "drop"};
+      "curves",    "films",   "solids", "bodies",     "fillets",
+      "walls",     "shells",  "fields", "spines",     "support",
+      "responses", "exclude", "load",   "constraint", "drop"};
   return std::find(tables.begin(), tables.end(), table) != tables.end();
 }
 

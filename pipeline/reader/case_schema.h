@@ -85,6 +85,7 @@ TableSpec film_table();      // case_reader_films.cpp
 TableSpec drop_table();      // the same
 TableSpec solid_table();     // the same
 TableSpec wall_table();      // case_reader_walls.cpp
+TableSpec shell_table();     // the same
 TableSpec fillet_table();    // the same
 TableSpec shape_table();     // case_reader_shapes.cpp
 TableSpec field_table();     // case_reader_energies.cpp

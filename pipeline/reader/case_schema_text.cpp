@@ -318,7 +318,9 @@ std::string json_schema() {
       for_parts.push_back(name);
     }
   }
-  schema["anyOf"] = {{{"required", for_parts}}, {{"required", {"walls"}}}};
+  schema["anyOf"] = {{{"required", for_parts}},
+                     {{"required", {"walls"}}},
+                     {{"required", {"shells"}}}};
   return json_text(schema, 2) + "\n";
 }
 

@@ -82,17 +82,23 @@ const std::vector<element::Material>& materials(const ResponseTask& task) {
   return task.fields.inputs.materials;
 }
 
+/// Of a shell, both sides of a film are its facets.
+std::string surface_of(const ResponseTask& task) {
+  return task.fields.shell != nullptr ? shells::film_of(task.response.surface)
+                                      : task.response.surface;
+}
+
 ResponsePartials mean_displacement(const ResponseTask& task) {
   if (!task.response.weight) {
     return to_partials(
         functionals::mean_displacement_functional(
-            task.fields.mesh, task.response.surface, task.inputs.direction,
+            task.fields.mesh, surface_of(task), task.inputs.direction,
             displacement(task), task.derivatives),
         task.response.load_case);
   }
   return to_partials(
       functionals::weighted_displacement_functional(
-          task.fields.mesh, task.response.surface, task.inputs.direction,
+          task.fields.mesh, surface_of(task), task.inputs.direction,
           {task.inputs.weight, task.inputs.weight_slope}, displacement(task),
           task.derivatives),
       task.response.load_case);
@@ -101,14 +107,14 @@ ResponsePartials mean_displacement(const ResponseTask& task) {
 ResponsePartials displacement_norm(const ResponseTask& task) {
   return to_partials(
       functionals::displacement_norm_functional(
-          task.fields.mesh, task.response.surface, task.inputs.direction,
+          task.fields.mesh, surface_of(task), task.inputs.direction,
           task.response.power, displacement(task), task.derivatives),
       task.response.load_case);
 }
 
 ResponsePartials rotation(const ResponseTask& task) {
   return to_partials(
-      functionals::rotation_functional(task.fields.mesh, task.response.surface,
+      functionals::rotation_functional(task.fields.mesh, surface_of(task),
                                        task.inputs.direction,
                                        displacement(task), task.derivatives),
       task.response.load_case);
@@ -387,6 +393,11 @@ ResponsePartials of_drawn_part(const ResponseTask& task) {
   if (task.response.worst_in) {
     return worst_partials(task);
   }
+  if (task.fields.shell != nullptr) {
+    if (std::optional<ResponsePartials> own = shell_partials(task)) {
+      return *std::move(own);
+    }
+  }
   switch (task.response.kind) {
     case Kind::MeanDisplacement:
       return mean_displacement(task);
@@ -464,6 +475,7 @@ void multiply_all(Items& items, double factor) {
 void multiply(ResponsePartials& partials, double factor) {
   partials.value *= factor;
   multiply_all(partials.by_nodes, factor);
+  multiply_all(partials.by_thickness, factor);
   for (CasePartials& of_case : partials.cases) {
     of_case.by_displacement *= factor;
     of_case.self_adjoint *= factor;

@@ -24,6 +24,10 @@ ResponsePartials compute_partials(const ResponseTask& task);
 ResponsePartials stress_ratio(const ResponseTask& task);
 ResponsePartials fatigue(const ResponseTask& task);
 
+/// Of shells, in shell_partials.cpp: none for what they have as solids do, of
+/// faces and films.
+std::optional<ResponsePartials> shell_partials(const ResponseTask& task);
+
 /// Of a load case, 3 per node: its loads' work and strain energy.
 ResponsePartials energy_of(const ResponseTask& task,
                            const loads::LoadCase& load_case, const VectorX& u);

@@ -12,6 +12,7 @@
 #include "pipeline/case_data/case.h"
 #include "pipeline/responses/response_modes.h"
 #include "pipeline/responses/scans.h"
+#include "pipeline/shells/shell_part.h"
 
 namespace meniscus::responses {
 
@@ -25,23 +26,24 @@ struct ResponseContext {
   const frozen::FilmModel* film = nullptr;
   const settle::FilmState* film_state = nullptr;
   const functionals::ThicknessPairs* pairs =
-      nullptr;                           // thickness_pairs_of() the model
-  const Scans* scans = nullptr;          // read_scans() of the case
-  const ResponseModes* modes = nullptr;  // of the design
+      nullptr;                               // thickness_pairs_of() the model
+  const Scans* scans = nullptr;              // read_scans() of the case
+  const ResponseModes* modes = nullptr;      // of the design
+  const shells::ShellPart* shell = nullptr;  // of a case with shells
 };
 
 /// What a response changes by one load case, all else held. What is empty is
 /// zero.
 struct CasePartials {
   int load_case = 0;        // index
-  VectorX by_displacement;  // 3 per node [value/length]
+  VectorX by_displacement;  // 3 per node [value/length]; of shells 3 or 6
   /// Where by_displacement is K u times a number, that number: the adjoint is
   /// then so many displacements.
   double self_adjoint = 0.0;
   /// Of any but a response's first: by_displacement is so many times that of
   /// the first, whose supports are the same, and so is the adjoint.
   std::optional<double> of_first = {};
-  VectorX by_forces;       // 3 per node [value/force]
+  VectorX by_forces;       // 3 per node, of shells 6 [value/force]
   VectorX by_temperature;  // per node [value/temperature]
 };
 
@@ -50,6 +52,7 @@ struct CasePartials {
 struct ResponsePartials {
   double value = 0.0;
   Points by_nodes;                  // of the mesh [value/length]
+  std::vector<Vec3> by_thickness;   // of shells, at each facet's corners
   std::vector<CasePartials> cases;  // that it depends on the displacement of
   /// Of a load from any direction: the worst, where it acts most.
   std::optional<Vec3> worst_direction;

@@ -195,6 +195,17 @@ const ExportFormat& format_named(const std::string& name) {
                                  export_format_names()));
 }
 
+/// Those that closed surfaces or tetrahedra are needed for.
+void refuse_shells(const case_data::Case& input, const ExportFormat& format) {
+  if (!input.shells.empty() && format.write != vtu && format.write != fe) {
+    throw InvalidInput(fmt::format(
+        "format '{}' is of solids, and shells.{} is none; there are vtu (its "
+        "facets and fields) and fe (the film), or take [walls] in place of "
+        "[shells]",
+        format.name, input.shells.front().name));
+  }
+}
+
 }  // namespace
 
 const std::vector<ExportFormat>& export_formats() {
@@ -227,6 +238,7 @@ fs::path export_part(const fs::path& folder, const ExportOptions& options) {
   ExportJob job(folder, {.edge = options.edge,
                          .program_version = options.program_version,
                          .monitor = options.monitor});
+  refuse_shells(job.input(), format);
   const case_data::Resolution& resolution = job.input().resolution;
   const double edge =
       options.edge.value_or(format.of_film ? resolution.film : resolution.fea);

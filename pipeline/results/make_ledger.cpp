@@ -143,10 +143,10 @@ std::vector<study::FileBytes> files_of(const case_data::Case& input,
   }
   const std::string deck_name =
       fmt::format("part_{:g}.inp", input.resolution.fea);
-  if (std::any_of(files.begin(), files.end(),
-                  [&](const study::FileBytes& file) {
-                    return file.name == deck_name;
-                  })) {
+  if (fields.shell || std::any_of(files.begin(), files.end(),
+                                  [&](const study::FileBytes& file) {
+                                    return file.name == deck_name;
+                                  })) {
     return files;
   }
   try {

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "core/error.h"
 #include "core/geometry/mesh_seams.h"
 #include "fea/functionals/volume_functionals.h"
 #include "fea/loads/loads.h"
@@ -56,8 +57,8 @@ PartLoadFigures load_figures(const forward::EvaluationFields& fields,
       .max_principal = largest_principal(fields.mesh, fields.exclusion.what,
                                          fields.stresses[k].recovered),
       .coefficient_of_variation =
-          stress.uniformity.von_mises.coefficient_of_variation,
-      .gini = stress.uniformity.von_mises.gini};
+          stress.uniformity->von_mises.coefficient_of_variation,
+      .gini = stress.uniformity->von_mises.gini};
   const VectorX forces =
       loads::nodal_forces(fields.mesh, load_case, fields.inputs.materials);
   figures.work = forces.dot(fields.solution.displacements[k]);
@@ -242,6 +243,12 @@ Json part_json(const PartFigures& part) {
 
 PartFigures part_figures(const std::string& name,
                          forward::EvaluationFields& fields) {
+  if (fields.shell) {
+    throw InvalidInput(fmt::format(
+        "'{}' is a shell, and parts are compared as solids; give it [walls] in "
+        "place of [shells]",
+        name));
+  }
   fields.stresses =
       forward::part_stresses(fields.mesh, fields.inputs, fields.solution);
   PartFigures part{

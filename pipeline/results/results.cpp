@@ -99,6 +99,66 @@ void add_node_fields(const case_data::Case& input,
                                   nodal.von_mises.size()));
 }
 
+io::Field shell_field(const case_data::Case& input, const std::string& name,
+                      std::vector<double> values) {
+  return {
+      .name = name, .unit = input.units.pressure, .values = std::move(values)};
+}
+
+/// Displacement, rotation and stresses of a load case; von_mises is the largest
+/// of both faces and the middle.
+void add_shell_fields(const case_data::Case& input,
+                      const forward::EvaluationFields& fields,
+                      std::size_t load_case, const std::string& ending,
+                      io::MeshFields& out) {
+  const shells::ShellPart& part = *fields.shell;
+  const VectorX& u = fields.solution.displacements[load_case];
+  out.points.push_back(node_field("displacement" + ending, input.units.length,
+                                  3, u.data(),
+                                  static_cast<std::size_t>(u.size())));
+  const VectorX turned =
+      shells::rotations_of(part.cases[load_case].displacement);
+  out.points.push_back(node_field("rotation" + ending, "rad", 3, turned.data(),
+                                  static_cast<std::size_t>(turned.size())));
+  using W = shell::WallStress;
+  for (const auto& [name, height] :
+       {std::pair("back", &W::negative), std::pair("middle", &W::middle),
+        std::pair("front", &W::positive)}) {
+    out.points.push_back(
+        shell_field(input, std::string(name) + "_von_mises" + ending,
+                    shells::nodal_von_mises(part, load_case, {height})));
+  }
+  out.points.push_back(shell_field(
+      input, "von_mises" + ending,
+      shells::nodal_von_mises(part, load_case,
+                              {&W::negative, &W::middle, &W::positive})));
+}
+
+/// Mean over the facets at each node, linear along edges.
+io::Field thickness_field(const case_data::Case& input,
+                          const shell::ShellMesh& mesh) {
+  io::Field field{.name = "thickness", .unit = input.units.length};
+  field.values.assign(mesh.nodes.size(), 0.0);
+  std::vector<double> count(mesh.nodes.size(), 0.0);
+  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+    const Vec3& t = mesh.thickness[f];
+    const std::array<double, 6> at = {t[0],
+                                      t[1],
+                                      t[2],
+                                      0.5 * (t[0] + t[1]),
+                                      0.5 * (t[1] + t[2]),
+                                      0.5 * (t[2] + t[0])};
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      field.values[mesh.facets[f][i]] += at[i];
+      count[mesh.facets[f][i]] += 1.0;
+    }
+  }
+  for (std::size_t n = 0; n < count.size(); ++n) {
+    field.values[n] /= count[n];
+  }
+  return field;
+}
+
 /// Those of one load case by plain names, the worst where `load_case` is none;
 /// all by their own where there are several.
 io::MeshFields part_fields(const case_data::Case& input,
@@ -110,11 +170,16 @@ io::MeshFields part_fields(const case_data::Case& input,
     worst = cases[k].name == load_case ? k : worst;
   }
   io::MeshFields out;
-  add_node_fields(input, fields, worst, "", out);
-  for (std::size_t k = 0; cases.size() > 1 && k < fields.stresses.size(); ++k) {
-    add_node_fields(input, fields, k, "_" + cases[k].name, out);
+  const auto add = fields.shell ? add_shell_fields : add_node_fields;
+  add(input, fields, worst, "", out);
+  for (std::size_t k = 0; cases.size() > 1 && k < cases.size(); ++k) {
+    add(input, fields, k, "_" + cases[k].name, out);
   }
-  out.cells = element_fields(input, fields, worst);
+  if (fields.shell) {
+    out.points.push_back(thickness_field(input, fields.shell->mesh));
+  } else {
+    out.cells = element_fields(input, fields, worst);
+  }
   out.notes = {{"title", input.title},
                {"length_unit", input.units.length},
                {"load_case", cases[worst].name}};
@@ -320,7 +385,12 @@ nlohmann::ordered_json result_json(const case_data::Case& input,
     if (!best->film.popped.empty()) {
       json["popped"] = forward::popped_json(best->film);
     }
-    json["tet"] = forward::tet_json(best->tet);
+    if (input.shells.empty()) {
+      json["tet"] = forward::tet_json(best->tet);
+    } else {
+      json["shell"] = {{"nodes", best->tet.nodes},
+                       {"facets", best->tet.elements}};
+    }
     json["fea"] = forward::fea_json(best->fea);
   }
   if (result.adaptation) {

@@ -170,6 +170,18 @@ std::string counts_text(const study::RunResult& result) {
   return parts.empty() ? text : text + " (" + parts + ")";
 }
 
+std::string elements_text(const case_data::Case& input,
+                          const forward::Evaluation& best) {
+  return input.shells.empty()
+             ? fmt::format(
+                   "{} ten-node tetrahedra, {} unknowns, dihedral "
+                   "angles {:.1f} to {:.1f} degrees",
+                   best.tet.elements, best.fea.dofs, best.tet.min_dihedral_deg,
+                   best.tet.max_dihedral_deg)
+             : fmt::format("{} six-node facets of shells, {} unknowns",
+                           best.tet.elements, best.fea.dofs);
+}
+
 }  // namespace
 
 std::string bound_reached(const case_data::DesignVariable& variable,
@@ -298,14 +310,12 @@ std::string result_text(const case_data::Case& input,
   text += fmt::format(
       "  film: {}, {} facets, residual {:.1e} (bound {:.1e}), smallest "
       "eigenvalue {:.3g}\n"
-      "  elements: {} ten-node tetrahedra, {} unknowns, dihedral angles {:.1f} "
-      "to {:.1f} degrees\n"
+      "  elements: {}\n"
       "  {} and {} in {:.1f} s (film {:.1f}, mesh "
       "{:.1f}, elasticity {:.1f}, gradients {:.1f})\n",
       best.film.verdict, best.film.facets, best.film.residual,
-      best.film.residual_bound, best.film.min_eigenvalue, best.tet.elements,
-      best.fea.dofs, best.tet.min_dihedral_deg, best.tet.max_dihedral_deg,
-      counts_text(result),
+      best.film.residual_bound, best.film.min_eigenvalue,
+      elements_text(input, best), counts_text(result),
       count_text(static_cast<std::size_t>(result.gradient_evaluations),
                  "gradient"),
       result.total_seconds, result.seconds.film, result.seconds.mesh,

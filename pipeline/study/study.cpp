@@ -397,6 +397,9 @@ void StudyRun::keep_history() {
 }
 
 void StudyRun::solve_eigenproblems() {
+  if (fields_.shell) {
+    return;
+  }
   monitor_.progress({.stage = "fea", .detail = "buckling, frequencies"});
   result_.eigen = forward::eigen_figures(
       input_, fields_, stage().evaluator().model().elasticity(), &limited_);
@@ -420,7 +423,9 @@ void StudyRun::estimate_element_errors_of_best() {
 }
 
 void StudyRun::estimate_errors() {
-  estimate_element_errors_of_best();
+  if (!fields_.shell) {
+    estimate_element_errors_of_best();
+  }
   const bool with_eigen =
       result_.eigen && forward::deserve_errors(input_, *result_.eigen);
   accuracy::MeshSequence meshes = other_meshes(with_eigen);

@@ -249,8 +249,14 @@ picture::PictureSurface part_surface(const case_data::Case& input,
                                      const forward::EvaluationFields& fields,
                                      std::size_t load_case) {
   io::BoundarySurface boundary = io::boundary_surface(fields.mesh);
-  const stress::StressField nodal =
-      stress::nodal_stress(fields.mesh, fields.stresses[load_case].recovered);
+  using W = shell::WallStress;
+  const std::vector<double> nodal =
+      fields.shell
+          ? shells::nodal_von_mises(*fields.shell, load_case,
+                                    {&W::negative, &W::middle, &W::positive})
+          : stress::nodal_stress(fields.mesh,
+                                 fields.stresses[load_case].recovered)
+                .von_mises;
   const VectorX& u = fields.solution.displacements[load_case];
   picture::PictureSurface surface;
   surface.mesh = std::move(boundary.mesh);
@@ -258,8 +264,7 @@ picture::PictureSurface part_surface(const case_data::Case& input,
   surface.stress_unit = input.units.pressure;
   for (const int node : boundary.nodes) {
     surface.displacement.emplace_back(u.segment<3>(3 * node));
-    surface.von_mises.push_back(
-        nodal.von_mises[static_cast<std::size_t>(node)]);
+    surface.von_mises.push_back(nodal[static_cast<std::size_t>(node)]);
   }
   return surface;
 }

@@ -18,6 +18,7 @@ namespace {
 
 constexpr int kTetCorners = 4;
 constexpr int kTetNodes = 10;
+constexpr int kFacetNodes = 6;  // of shells
 
 const std::vector<double>* find_array(
     const std::map<std::string, std::vector<double>>& arrays, const char* name,
@@ -188,11 +189,21 @@ void find_energies(const VtkInput& part,
   mesh.stress_error = errors.take();
 }
 
+/// A part without inside, or whose inside is not there.
+void add_surface(const VtkInput& surface, PageMesh& mesh) {
+  mesh.nodes = surface.points;
+  copy_node_fields(surface, mesh);
+}
+
 /// The surface's triangles, elements and fields by part.vtu's nodes.
 void add_inside(const VtkInput& surface, const fs::path& path,
                 const std::vector<element::Material>& materials,
                 PageMesh& mesh) {
   const VtkInput part = read_vtk(path, {"point_stress"});
+  if (part.cell_size == kFacetNodes) {
+    add_surface(surface, mesh);
+    return;
+  }
   if (part.cell_size != kTetCorners && part.cell_size != kTetNodes) {
     refuse_file(path, "holds no tetrahedra");
   }
@@ -233,8 +244,7 @@ PageMesh load_page_part(const fs::path& surface_path, const fs::path& part_path,
   if (fs::is_regular_file(part_path, ignored)) {
     add_inside(surface, part_path, materials, mesh);
   } else {
-    mesh.nodes = surface.points;
-    copy_node_fields(surface, mesh);
+    add_surface(surface, mesh);
   }
   return mesh;
 }

@@ -132,9 +132,11 @@ picture::PictureTets load_tets(const std::string& path) {
   vtkUnstructuredGrid* grid = reader->GetOutput();
   picture::PictureTets tets;
   tets.nodes = points_of(grid);
+  bool is_shell = false;
   vtkNew<vtkIdList> ids;
   for (vtkIdType c = 0; c < grid->GetNumberOfCells(); ++c) {
     const int type = grid->GetCellType(c);
+    is_shell = is_shell || type == VTK_QUADRATIC_TRIANGLE;
     if (type == VTK_TETRA || type == VTK_QUADRATIC_TETRA) {
       grid->GetCellPoints(c, ids);
       auto& corners = tets.corners.emplace_back();
@@ -143,7 +145,7 @@ picture::PictureTets load_tets(const std::string& path) {
       }
     }
   }
-  if (reader->GetErrorCode() != 0 || tets.corners.empty()) {
+  if (reader->GetErrorCode() != 0 || (tets.corners.empty() && !is_shell)) {
     refuse(path, "is no VTK volume or holds no tetrahedra");
   }
   return tets;

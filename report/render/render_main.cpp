@@ -87,21 +87,22 @@ void draw_one(const picture::PictureJob& job) {
   save_picture({&panel}, job.width, job.height, job.output);
 }
 
-/// Where three panels of an overview have their things, and its height [pixel].
+/// Where the panels of an overview have their things, and its height [pixel].
 struct OverviewLayout {
   ViewLayout view;
   int height = 0;
 };
 
 /// A part taller than a panel is wide gets a taller picture.
+/// `share`: a panel's of the width.
 OverviewLayout overview_layout(const picture::PictureJob& job,
-                               const Points& film) {
+                               const Points& film, double share) {
   constexpr double kHead = 0.14;    // x the height asked for: titles
   constexpr double kFoot = 0.22;    // bar and legends
   constexpr double kTallest = 1.9;  // x the height asked for
   constexpr double kMargin = 0.02;  // x the panel's width
   const double asked = job.height;
-  const double panel = job.width / 3.0;
+  const double panel = share * job.width;
   const double tall =
       seen_aspect(film, job.view) * (1.0 - 2.0 * kMargin) * panel +
       (kHead + kFoot) * asked;
@@ -117,15 +118,17 @@ OverviewLayout overview_layout(const picture::PictureJob& job,
 
 void draw_overview(const picture::PictureJob& job) {
   const auto surface = film_of(job);
-  const OverviewLayout overview = overview_layout(job, surface->mesh.points);
+  const auto tets = shape_of(job.part, load_tets);
+  const bool solid = !tets->corners.empty();  // shells have no inside
+  const double share = solid ? 1.0 / 3 : 1.0 / 2;
+  const OverviewLayout overview =
+      overview_layout(job, surface->mesh.points, share);
   const ViewLayout& layout = overview.view;
   const int height = overview.height;
-  Panel film({0, 0, 1.0 / 3, 1}, job.width, height);
+  Panel film({0, 0, share, 1}, job.width, height);
   Panel mesh({1.0 / 3, 0, 2.0 / 3, 1}, job.width, height);
-  Panel part({2.0 / 3, 0, 1, 1}, job.width, height);
-  const auto tets = shape_of(job.part, load_tets);
+  Panel part({1.0 - share, 0, 1, 1}, job.width, height);
   const bool liquid = draw_film(film, job, *surface);
-  draw_cut_mesh(mesh, job, *tets);
   const PartFigures figures = draw_part(part, job, *stressed_part(job), layout);
   const auto caption = [&](Panel& panel, const std::string& title,
                            const std::string& line) {
@@ -137,7 +140,7 @@ void draw_overview(const picture::PictureJob& job) {
     panel.add_text(
         0.5, 1.0 - 3.5 * row, line,
         {.size = layout.text, .colour = kGrey, .justify = Justify::Centre});
-    // One scale and one eye for all three.
+    // One scale and one eye for all.
     if (&panel != &part) {
       panel.show(part.shown());
     }
@@ -146,8 +149,14 @@ void draw_overview(const picture::PictureJob& job) {
   caption(film, liquid ? "Liquid film" : "Plane faces",
           fmt::format("{} facets{}", grouped(surface->mesh.facets.size()),
                       liquid ? " at rest" : ""));
-  caption(mesh, "Solid, cut open",
-          fmt::format("{} tetrahedra", grouped(tets->corners.size())));
+  if (solid) {
+    draw_cut_mesh(mesh, job, *tets);
+    caption(mesh, "Solid, cut open",
+            fmt::format("{} tetrahedra", grouped(tets->corners.size())));
+    mesh.add_legend(layout.bar.bottom,
+                    {{kOutsideColour, "surface"}, {kInsideColour, "inside"}},
+                    layout.text);
+  }
   caption(
       part, "Stress under load",
       fmt::format("{}deflection \u00d7 {:g}", case_text(job), figures.factor));
@@ -159,10 +168,11 @@ void draw_overview(const picture::PictureJob& job) {
     keys.insert(keys.begin(), {kFilmColour, "film"});
   }
   film.add_legend(layout.bar.bottom, keys, layout.text);
-  mesh.add_legend(layout.bar.bottom,
-                  {{kOutsideColour, "surface"}, {kInsideColour, "inside"}},
-                  layout.text);
-  save_picture({&film, &mesh, &part}, job.width, height, job.output);
+  std::vector<Panel*> panels = {&film, &part};
+  if (solid) {
+    panels.insert(panels.begin() + 1, &mesh);
+  }
+  save_picture(panels, job.width, height, job.output);
 }
 
 int run() {

@@ -53,9 +53,10 @@ targets = { sway = 5.8e-3 }
 tolerance = 0.005
 """
 
-# What multipliers_test.py, refreeze_test.py and pops_test.py look at.
+# What multipliers_test.py, refreeze_test.py, pops_test.py and shells_test.py
+# look at.
 ELSEWHERE = {"envelopes", "norm_peaks", "refrozen", "popped", "topology",
-             "multipliers"}
+             "multipliers", "shell"}
 # Kinds of study with a part of result.json of their own.
 OTHER_STUDIES = {
     "sweep": 'kind = "sweep"\ncount = 2\n',

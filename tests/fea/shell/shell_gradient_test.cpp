@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "fea/shell/shell_norm.h"
 #include "fea/shell/shell_system.h"
 #include "tests/support/derivatives.h"
 #include "tests/support/shell_shapes.h"
@@ -183,6 +184,66 @@ TEST(ShellGradient, OfADisplacementMeetsSolvedDifferences) {
     flat(moved.nodes) += h * flat(move);
     return response(moved);
   });
+}
+
+/// By places, thicknesses and nodes' numbers, all else held.
+TEST(ShellGradient, OfAStressNormMeetsDifferences) {
+  const MappedShell shell = saddle();
+  const std::vector<Section> sections = layered();
+  const ShellLoads loads = all_loads(shell);
+  const VectorX u = six_waves(shell.mesh, 0.3);
+  const auto value = [&](const ShellMesh& mesh, const VectorX& displacement) {
+    return von_mises_norm(mesh, sections, loads, displacement, 6.0,
+                          NormDerivatives::None)
+        .value;
+  };
+  const StressNorm here =
+      von_mises_norm(shell.mesh, sections, loads, u, 6.0, NormDerivatives::All);
+  EXPECT_GT(here.value, 0.0);
+  derivatives::Check check;
+  const Points move = wave_of(shell.mesh.nodes, 0.7);
+  check.exact = flat(here.by_nodes).dot(flat(move));
+  check.scale = flat(here.by_nodes).cwiseProduct(flat(move)).lpNorm<1>();
+  derivatives::expect_derivative(check, [&](double h) {
+    ShellMesh moved = shell.mesh;
+    flat(moved.nodes) += h * flat(move);
+    return value(moved, u);
+  });
+  const Points thicker = wave_of(shell.mesh.nodes, 0.2);
+  check.exact = 0.0;
+  check.scale = 0.0;
+  for (std::size_t f = 0; f < here.by_thickness.size(); ++f) {
+    check.exact += 0.05 * here.by_thickness[f].dot(thicker[f]);
+    check.scale +=
+        0.05 * here.by_thickness[f].cwiseProduct(thicker[f]).lpNorm<1>();
+  }
+  derivatives::expect_derivative(check, [&](double h) {
+    ShellMesh other = shell.mesh;
+    for (std::size_t f = 0; f < other.thickness.size(); ++f) {
+      other.thickness[f] += 0.05 * h * thicker[f];
+    }
+    return value(other, u);
+  });
+  const VectorX more = six_waves(shell.mesh, 1.1);
+  check.exact = here.by_displacement.dot(more);
+  check.scale = here.by_displacement.cwiseProduct(more).lpNorm<1>();
+  derivatives::expect_derivative(
+      check, [&](double h) { return value(shell.mesh, u + h * more); });
+}
+
+/// A large power is near to the largest stress of the points, from below.
+TEST(ShellGradient, AStressNormGrowsToThePeak) {
+  const MappedShell shell = saddle();
+  const std::vector<Section> sections = layered();
+  const VectorX u = six_waves(shell.mesh, 0.3);
+  const auto norm = [&](double power) {
+    return von_mises_norm(shell.mesh, sections, {}, u, power,
+                          NormDerivatives::None)
+        .value;
+  };
+  EXPECT_LT(norm(2.0), norm(8.0));
+  EXPECT_LT(norm(8.0), norm(400.0));
+  EXPECT_LT(norm(400.0), 1.02 * norm(200.0));
 }
 
 }  // namespace

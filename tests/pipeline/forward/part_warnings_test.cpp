@@ -110,8 +110,8 @@ TEST(StressFigures, TellThePeakItsPlaceAndHowEvenThePartIs) {
   EXPECT_NEAR(figures[0].safety->factor, 0.8, kSolver);
   EXPECT_EQ(figures[0].safety->material, "far");
   EXPECT_GE(figures[0].safety->position.x(), 2.0 - kSolver);
-  EXPECT_NEAR(figures[0].uniformity.von_mises.gini, 0.0, kSolver);
-  EXPECT_NEAR(figures[0].uniformity.von_mises.volume, 4.0, kSolver);
+  EXPECT_NEAR(figures[0].uniformity->von_mises.gini, 0.0, kSolver);
+  EXPECT_NEAR(figures[0].uniformity->von_mises.volume, 4.0, kSolver);
   const nlohmann::ordered_json json = forward::stress_json(figures);
   EXPECT_NEAR(json["pull"]["safety_factor"]["smallest"].get<double>(), 0.8,
               kSolver);

@@ -40,5 +40,18 @@ TEST(WorkEstimate, RefusesWhatMemoryDoesNotHold) {
             "about 110,000 elements, 0.47 GB");
 }
 
+TEST(WorkEstimate, RefusesShellsThatMemoryDoesNotHold) {
+  forward::require_shell_work(1000, 5.0);
+  try {
+    forward::require_shell_work(2'000'000'000, 0.01);
+    FAIL() << "92 TB were not refused";
+  } catch (const InvalidInput& error) {
+    EXPECT_THAT(error.what(),
+                testing::AllOf(testing::HasSubstr("2,000,000,000 facets"),
+                               testing::HasSubstr("GB are free"),
+                               testing::HasSubstr("resolution.fea")));
+  }
+}
+
 }  // namespace
 }  // namespace meniscus::work_estimate_test

@@ -1,0 +1,135 @@
+#include <fmt/format.h>
+
+#include "fea/shell/shell_norm.h"
+#include "pipeline/responses/response_partials.h"
+#include "pipeline/shells/shell_part.h"
+
+namespace meniscus::responses {
+
+namespace {
+
+ResponsePartials shell_to_partials(shell::ShellGradient gradient) {
+  ResponsePartials result;
+  result.value = gradient.value;
+  result.by_nodes = std::move(gradient.by_nodes);
+  result.by_thickness = std::move(gradient.by_thickness);
+  return result;
+}
+
+/// Work of the loads, or half of it: nothing else does any.
+ResponsePartials shell_energy(const ResponseTask& task) {
+  const auto load_case = static_cast<std::size_t>(task.response.load_case);
+  const shells::ShellPart& part = *task.fields.shell;
+  const shells::ShellCase& own = part.cases[load_case];
+  const VectorX& u = own.displacement;
+  const double share =
+      task.response.kind == case_data::ResponseKind::StrainEnergy ? 0.5 : 1.0;
+  ResponsePartials result;
+  if (task.derivatives == element::Derivatives::All) {
+    result = shell_to_partials(shells::work_gradient(part, load_case, share * u,
+                                                     VectorX::Zero(u.size())));
+    result.cases.push_back({.load_case = task.response.load_case,
+                            .by_displacement = {},
+                            .self_adjoint = share,
+                            .by_forces = share * u,
+                            .by_temperature = {}});
+  }
+  result.value = share * u.dot(shell::nodal_forces(part.mesh, part.sections,
+                                                   own.actions.loads));
+  return result;
+}
+
+/// The mass of a density of 1.
+ResponsePartials shell_volume(const shells::ShellPart& part) {
+  std::vector<shell::Section> sections = part.sections;
+  for (shell::Section& section : sections) {
+    for (shell::Ply& ply : section.laminate.plies) {
+      ply.material.density = 1.0;
+    }
+  }
+  return shell_to_partials(shell::shell_mass(part.mesh, sections));
+}
+
+ResponsePartials mean_on_rim(const ResponseTask& task) {
+  const shells::ShellPart& part = *task.fields.shell;
+  const auto load_case = static_cast<std::size_t>(task.response.load_case);
+  shell::LineMean mean = shell::mean_displacement(
+      part.mesh, shells::rim_of(part, task.response.surface),
+      task.inputs.direction, part.cases[load_case].displacement);
+  ResponsePartials result;
+  result.value = mean.value;
+  result.by_nodes = std::move(mean.by_nodes);
+  result.by_direction = mean.by_direction;
+  result.cases.push_back({.load_case = task.response.load_case,
+                          .by_displacement = std::move(mean.by_displacement),
+                          .by_forces = {},
+                          .by_temperature = {}});
+  return result;
+}
+
+ResponsePartials shell_peak_stress(const ResponseTask& task) {
+  if (task.derivatives == element::Derivatives::All) {
+    throw InvalidInput(fmt::format(
+        "response '{}' is a max_von_mises, which has no derivative: use "
+        "von_mises_norm",
+        task.response.name));
+  }
+  const shells::ShellPart& part = *task.fields.shell;
+  ResponsePartials result;
+  result.value =
+      shells::shell_peak(
+          part, shells::shell_stresses(
+                    part, static_cast<std::size_t>(task.response.load_case)))
+          .von_mises;
+  return result;
+}
+
+ResponsePartials shell_stress_norm(const ResponseTask& task) {
+  const shells::ShellPart& part = *task.fields.shell;
+  const shells::ShellCase& own =
+      part.cases[static_cast<std::size_t>(task.response.load_case)];
+  shell::StressNorm norm =
+      shell::von_mises_norm(part.mesh, part.sections, own.actions.loads,
+                            own.displacement, task.response.power,
+                            task.derivatives == element::Derivatives::All
+                                ? shell::NormDerivatives::All
+                                : shell::NormDerivatives::None);
+  ResponsePartials result;
+  result.value = norm.value;
+  result.by_nodes = std::move(norm.by_nodes);
+  result.by_thickness = std::move(norm.by_thickness);
+  result.cases.push_back({.load_case = task.response.load_case,
+                          .by_displacement = std::move(norm.by_displacement),
+                          .by_forces = {},
+                          .by_temperature = {}});
+  return result;
+}
+
+}  // namespace
+
+std::optional<ResponsePartials> shell_partials(const ResponseTask& task) {
+  using Kind = case_data::ResponseKind;
+  const shells::ShellPart& part = *task.fields.shell;
+  switch (task.response.kind) {
+    case Kind::Compliance:
+    case Kind::StrainEnergy:
+      return shell_energy(task);
+    case Kind::Mass:
+      return shell_to_partials(shell::shell_mass(part.mesh, part.sections));
+    case Kind::Volume:
+      return shell_volume(part);
+    case Kind::MaxVonMises:
+      return shell_peak_stress(task);
+    case Kind::VonMisesNorm:
+      return shell_stress_norm(task);
+    case Kind::MeanDisplacement:
+      if (part.rims.contains(task.response.surface)) {
+        return mean_on_rim(task);
+      }
+      return std::nullopt;
+    default:
+      return std::nullopt;
+  }
+}
+
+}  // namespace meniscus::responses

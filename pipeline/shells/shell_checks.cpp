@@ -1,0 +1,292 @@
+#include "pipeline/shells/shell_checks.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "pipeline/case_data/case_values.h"
+#include "pipeline/case_data/response_kinds.h"
+
+namespace meniscus::shells {
+
+namespace {
+
+const std::vector<case_data::ResponseKind>& kinds_of_shells() {
+  using K = case_data::ResponseKind;
+  static const std::vector<case_data::ResponseKind> kinds = {
+      K::MeanDisplacement, K::DisplacementNorm, K::Rotation,
+      K::Compliance,       K::StrainEnergy,     K::Mass,
+      K::Volume,           K::MaxVonMises,      K::VonMisesNorm,
+      K::Envelope,         K::Expression};
+  return kinds;
+}
+
+bool is_rim(const std::string& surface) {
+  return surface.find("/rim:") != std::string::npos;
+}
+
+bool has_rim(const loads::Surfaces& surfaces) {
+  return std::any_of(surfaces.begin(), surfaces.end(), is_rim);
+}
+
+/// Notes of one case with shells.
+class ShellChecks {
+ public:
+  ShellChecks(const case_data::Case& input, case_data::CaseProblems& problems)
+      : input_(input), problems_(problems) {}
+
+  void check() {
+    check_part();
+    check_materials();
+    for (const case_data::LoadCaseEntry& load_case : input_.load_cases) {
+      check_supports(load_case);
+      for (const case_data::LoadEntry& load : load_case.loads) {
+        check_load(load_case, load);
+      }
+    }
+    std::for_each(
+        input_.responses.begin(), input_.responses.end(),
+        [this](const case_data::ResponseEntry& r) { check_response(r); });
+    check_analysis();
+  }
+
+ private:
+  void check_part() {
+    const case_data::ShellEntry& first = input_.shells.front();
+    if (!input_.walls.empty()) {
+      problems_.add(first.line,
+                    fmt::format("shells.{} stands beside walls.{}; a run "
+                                "analyses shells or walls: make all of them "
+                                "one",
+                                first.name, input_.walls.front().name));
+    }
+    for (const case_data::BodyEntry& body : input_.bodies) {
+      if (body.material != case_data::kVoid) {
+        problems_.add(
+            first.line,
+            fmt::format("shells.{} stands beside bodies.{}, which is solid; a "
+                        "run analyses shells or bodies: make the body's "
+                        "material \"void\", so that it only shapes its films, "
+                        "or take [shells] out",
+                        first.name, body.name));
+      }
+    }
+    if (!input_.fillets.empty()) {
+      problems_.add(input_.fillets.front().line,
+                    fmt::format("fillets.{} stands beside shells.{}, whose "
+                                "films meet in lines; take it out",
+                                input_.fillets.front().name, first.name));
+    }
+    if (input_.resolution.refinements == 0) {
+      problems_.add(0,
+                    fmt::format("resolution.film is as long as "
+                                "resolution.fea; shells.{} needs the middles "
+                                "of its edges on the film: half as long, or "
+                                "take it out",
+                                first.name));
+    }
+    if (!input_.resolution.export_edges.empty()) {
+      problems_.add(0, fmt::format("resolution.export is of closed surfaces, "
+                                   "which shells.{} has not; take it out",
+                                   first.name));
+    }
+    if (input_.process.smallest_feature > 0.0) {
+      problems_.add(0,
+                    fmt::format("[process] looks at solids, and shells.{} is "
+                                "none; take it out, and bound the thickness "
+                                "itself",
+                                first.name));
+    }
+  }
+
+  void check_materials() {
+    std::vector<std::string> found;
+    const case_data::CaseValues values(
+        input_, case_data::initial_design(input_), found);
+    for (const case_data::ShellEntry& shell : input_.shells) {
+      const case_data::MaterialEntry& material =
+          input_.materials[static_cast<std::size_t>(shell.material)];
+      if (material.orthotropic) {
+        problems_.add(shell.line,
+                      fmt::format("shells.{} is of '{}', which is orthotropic; "
+                                  "shells take isotropic materials",
+                                  shell.name, material.name));
+      } else if (values.follows_design(material.density) ||
+                 values.follows_design(material.youngs_modulus)) {
+        problems_.add(
+            material.line,
+            fmt::format("'{}' follows the design, which materials of shells "
+                        "cannot yet; let the thickness follow it",
+                        material.name));
+      }
+    }
+  }
+
+  void check_supports(const case_data::LoadCaseEntry& load_case) {
+    const auto refuse = [&](case_data::SourceLine line,
+                            const std::string& what) {
+      problems_.add(line, fmt::format("load case '{}' has {}, which shells "
+                                      "do not know; hold components (fix, "
+                                      "fix_rotation) at 0",
+                                      load_case.name, what));
+    };
+    for (const case_data::SupportEntry& support : load_case.supports) {
+      if (support.support.kind != loads::SupportKind::Components) {
+        refuse(support.line, "a support along normals");
+      } else if (support.displacement) {
+        refuse(support.line, "an enforced displacement");
+      }
+    }
+    if (!load_case.springs.empty()) {
+      refuse(load_case.line, "springs");
+    }
+    if (!load_case.pins.empty()) {
+      refuse(load_case.pins.front().line, "a rigid support");
+    }
+  }
+
+  void check_load(const case_data::LoadCaseEntry& load_case,
+                  const case_data::LoadEntry& load) {
+    const auto refuse = [&](const std::string& what, const char* instead) {
+      problems_.add(load.line,
+                    fmt::format("load case '{}' has {}, which shells do not "
+                                "know; {}",
+                                load_case.name, what, instead));
+    };
+    const bool on_rim = has_rim(load.surfaces);
+    if (load.size) {
+      return refuse("a load from any direction", "give load cases of forces");
+    }
+    if (load.by != case_data::LoadPath::Spread) {
+      return refuse("a rigid or bearing load", "spread it (take `by` out)");
+    }
+    switch (load.kind) {
+      case case_data::LoadKind::Force:
+        if (on_rim && load.surfaces.size() > 1) {
+          refuse("a force on several rims together",
+                 "give each an entry with its share");
+        }
+        break;
+      case case_data::LoadKind::Remote:
+      case case_data::LoadKind::Traction:
+        if (on_rim) {
+          refuse("a moment or a traction on a rim", "give it a force");
+        }
+        break;
+      case case_data::LoadKind::Pressure:
+        if (on_rim || load.place.of_place) {
+          refuse(on_rim ? "a pressure on a rim" : "a pressure of place",
+                 "give a film one number, or a traction of place");
+        }
+        break;
+      case case_data::LoadKind::Temperature:
+        refuse("a temperature", "take [walls] for it");
+        break;
+      case case_data::LoadKind::Preload:
+        refuse("a bolt", "give its force to a film or a rim");
+        break;
+      case case_data::LoadKind::Spin: {
+        std::vector<std::string> found;
+        const case_data::CaseValues values(
+            input_, case_data::initial_design(input_), found);
+        if (values.follows_design(load.number) ||
+            values.follows_design(load.vector) ||
+            values.follows_design(load.at)) {
+          refuse("a spin that follows the design", "give it fixed numbers");
+        }
+        break;
+      }
+      case case_data::LoadKind::Gravity:
+        break;
+    }
+  }
+
+  void check_response(const case_data::ResponseEntry& response) {
+    const std::vector<case_data::ResponseKind>& kinds = kinds_of_shells();
+    const case_data::ResponseRow& row = case_data::row_of(response.kind);
+    if (!row.of_films &&
+        std::find(kinds.begin(), kinds.end(), response.kind) == kinds.end()) {
+      std::vector<std::string> names;
+      for (const case_data::ResponseKind kind : kinds) {
+        names.emplace_back(case_data::row_of(kind).name);
+      }
+      problems_.add(
+          response.line,
+          fmt::format("responses.{} is of kind {}, which shells do "
+                      "not have; they have {} and those of films",
+                      response.name, row.name, fmt::join(names, ", ")));
+    } else if (is_rim(response.surface) &&
+               (response.kind != case_data::ResponseKind::MeanDisplacement ||
+                response.weight)) {
+      problems_.add(response.line,
+                    fmt::format("responses.{} is on a rim, where shells have "
+                                "mean_displacement without weight; name a film",
+                                response.name));
+    } else if (response.kind == case_data::ResponseKind::VonMisesNorm) {
+      check_norm(response);
+    }
+  }
+
+  /// Pressures and weight stress a wall beside what they move it by.
+  void check_norm(const case_data::ResponseEntry& response) {
+    std::vector<std::string> found;
+    const case_data::CaseValues values(
+        input_, case_data::initial_design(input_), found);
+    const case_data::LoadCaseEntry& load_case =
+        input_.load_cases[static_cast<std::size_t>(response.load_case)];
+    for (const case_data::LoadEntry& load : load_case.loads) {
+      const bool pressed = load.kind == case_data::LoadKind::Pressure &&
+                           values.follows_design(load.place.quantity);
+      if (pressed || (load.kind == case_data::LoadKind::Gravity &&
+                      values.follows_design(load.vector))) {
+        problems_.add(
+            response.line,
+            fmt::format("responses.{} is of load case '{}', whose {} follows "
+                        "the design, which norms of shells cannot yet; give it "
+                        "a fixed number",
+                        response.name, load_case.name,
+                        pressed ? "pressure" : "gravity"));
+      }
+    }
+  }
+
+  void check_analysis() {
+    const case_data::AnalysisEntry& analysis = input_.analysis;
+    const auto refuse = [&](const char* what) {
+      problems_.add(0, fmt::format("analysis.{} is of solids, and shells.{} is "
+                                   "none; take it out",
+                                   what, input_.shells.front().name));
+    };
+    if (analysis.adapt) {
+      refuse("adapt");
+    }
+    if (!analysis.exclude.empty()) {
+      refuse("exclude");
+    }
+    if (analysis.frequencies > 0) {
+      refuse("frequencies");
+    }
+    if (analysis.buckling.value_or(0) > 0) {
+      refuse("buckling");
+    }
+    if (analysis.solver != equations::SolverKind::Automatic &&
+        analysis.solver != equations::SolverKind::Cholesky) {
+      refuse("solver");
+    }
+  }
+
+  const case_data::Case& input_;
+  case_data::CaseProblems& problems_;
+};
+
+}  // namespace
+
+void check_shells(const case_data::Case& input,
+                  case_data::CaseProblems& problems) {
+  if (!input.shells.empty()) {
+    ShellChecks(input, problems).check();
+  }
+}
+
+}  // namespace meniscus::shells

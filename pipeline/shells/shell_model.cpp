@@ -1,0 +1,295 @@
+#include "pipeline/shells/shell_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "core/timer.h"
+#include "evolve/walls/rim_shape.h"
+#include "evolve/walls/wall_films.h"
+
+namespace meniscus::shells {
+
+namespace {
+
+using shell::Line;
+
+/// Corners numbered as facets first name them.
+SurfaceNodes nodes_of(const walls::WallFilms& films) {
+  SurfaceMesh mesh = films.mesh;
+  std::vector<int> corner;
+  std::vector<int> id(mesh.points.size(), -1);
+  for (Triangle& facet : mesh.facets) {
+    for (int& v : facet) {
+      if (id[v] < 0) {
+        id[v] = static_cast<int>(corner.size());
+        corner.push_back(v);
+      }
+      v = id[v];
+    }
+  }
+  const std::vector<char> straight(mesh.points.size(), 0);
+  mesh.points.clear();
+  return surface_nodes(std::move(mesh), std::move(corner), films.middles,
+                       straight);
+}
+
+/// The film's edges of which both ends and the middle are on the curve.
+Line edges_on(const SurfaceNodes& nodes, int label,
+              const std::set<int>& vertices) {
+  const auto corners = static_cast<int>(nodes.corner.size());
+  std::set<int> taken;
+  Line line;
+  for (std::size_t f = 0; f < nodes.mesh.facets.size(); ++f) {
+    for (int k = 0; k < 3 && nodes.mesh.facet_label[f] == label; ++k) {
+      const int a = nodes.mesh.facets[f][k];
+      const int b = nodes.mesh.facets[f][(k + 1) % 3];
+      const int edge = nodes.facet_edges[f][k];
+      if (vertices.contains(nodes.corner[a]) &&
+          vertices.contains(nodes.corner[b]) &&
+          vertices.contains(nodes.mid[edge]) && taken.insert(edge).second) {
+        line.push_back({a, b, corners + edge});
+      }
+    }
+  }
+  return line;
+}
+
+std::map<std::string, Line> rims_of(const walls::WallFilms& films,
+                                    const SurfaceNodes& nodes) {
+  std::map<std::string, Line> rims;
+  for (std::size_t label = 0; label < films.mesh.labels.size(); ++label) {
+    for (const walls::RimName& name : films.names) {
+      const Line line = edges_on(nodes, static_cast<int>(label),
+                                 {name.vertices.begin(), name.vertices.end()});
+      if (!line.empty()) {
+        Line& rim = rims[films.mesh.labels[label] + "/rim:" + name.curve];
+        rim.insert(rim.end(), line.begin(), line.end());
+      }
+    }
+  }
+  return rims;
+}
+
+double offset_of(walls::WallSide side) {
+  switch (side) {
+    case walls::WallSide::Both:
+      return 0.0;
+    case walls::WallSide::Inside:
+      return -0.5;
+    case walls::WallSide::Outside:
+      return 0.5;
+  }
+  return 0.0;
+}
+
+TetMesh skin_of(const QuadraticSurface& surface,
+                const shell::ShellMesh& shell) {
+  TetMesh skin;
+  skin.order = 2;
+  skin.nodes = shell.nodes;
+  skin.corner_count = static_cast<int>(surface.base.points.size());
+  for (const std::array<int, 6>& facet : shell.facets) {
+    skin.faces.insert(skin.faces.end(), facet.begin(), facet.end());
+  }
+  skin.face_label = surface.base.facet_label;
+  skin.labels = surface.base.labels;
+  return skin;
+}
+
+}  // namespace
+
+ShellModel::ShellModel(const case_data::Case& input,
+                       const case_data::EvaluatedCase& inputs,
+                       const frozen::FilmModel& film) {
+  const Points& points = film.reference().points;
+  const walls::WallFilms films =
+      walls::wall_films(film, inputs.film_system, points, inputs.shells);
+  nodes_ = nodes_of(films);
+  for (const int label : nodes_.mesh.facet_label) {
+    section_.push_back(films.wall[label]);
+  }
+  for (const int corner : nodes_.corner) {
+    reference_.push_back(points[static_cast<std::size_t>(corner)]);
+  }
+  specs_ = walls::on_films(inputs.shells, films.mesh, films.wall, films.rims);
+  for (const case_data::ShellEntry& entry : input.shells) {
+    keys_.push_back(fmt::format("{}: shells.{}.thickness",
+                                case_data::place(input, entry.line),
+                                entry.name));
+  }
+  rims_ = rims_of(films, nodes_);
+}
+
+double ShellModel::thickness_at(std::size_t shell, Numbers numbers,
+                                const Vec3& at) const {
+  double thickness = 0.0;
+  try {
+    thickness = value_at(specs_[shell].thickness, numbers, at);
+  } catch (const ExpressionError& error) {
+    throw InvalidInput(
+        fmt::format("{} has no value: {}", keys_[shell], error.what()));
+  }
+  if (!(thickness > 0.0) || !std::isfinite(thickness)) {
+    throw InvalidInput(fmt::format(
+        "{} is {:g} at ({:.4g}, {:.4g}, {:.4g}); it must be above 0 on the "
+        "whole film",
+        keys_[shell], thickness, at.x(), at.y(), at.z()));
+  }
+  return thickness;
+}
+
+std::shared_ptr<ShellPart> ShellModel::part(
+    const case_data::EvaluatedCase& inputs, const Points& film) const {
+  auto part = std::make_shared<ShellPart>();
+  const QuadraticSurface surface = nodes_.at(film);
+  part->mesh = shell::shell_mesh(
+      surface, VectorX::Ones(std::ssize(surface.base.points)));
+  part->mesh.section = section_;
+  for (std::size_t f = 0; f < section_.size(); ++f) {
+    const auto s = static_cast<std::size_t>(section_[f]);
+    for (int k = 0; k < 3; ++k) {
+      part->mesh.thickness[f][k] =
+          thickness_at(s, inputs.shells[s].thickness.own(),
+                       reference_[nodes_.mesh.facets[f][k]]);
+    }
+  }
+  for (std::size_t s = 0; s < inputs.shells.size(); ++s) {
+    part->sections.push_back(
+        {.laminate = {.plies = {{.material = inputs.materials[s]}}},
+         .offset = offset_of(inputs.shells[s].side)});
+  }
+  shell::check_shell(part->mesh, part->sections);
+  part->skin = skin_of(surface, part->mesh);
+  part->rims = rims_;
+  return part;
+}
+
+Points ShellModel::to_film(const Points& by_nodes, std::size_t points) const {
+  const auto corners = static_cast<std::ptrdiff_t>(nodes_.corner.size());
+  return nodes_.transpose({by_nodes.begin(), by_nodes.begin() + corners},
+                          {by_nodes.begin() + corners, by_nodes.end()}, points);
+}
+
+std::vector<VectorX> ShellModel::to_numbers(
+    const case_data::EvaluatedCase& inputs,
+    const std::vector<Vec3>& by_thickness) const {
+  std::vector<VectorX> sums;
+  for (const walls::WallSpec& spec : inputs.shells) {
+    sums.push_back(VectorX::Zero(spec.thickness.numbers.size()));
+  }
+  for (std::size_t f = 0; f < by_thickness.size(); ++f) {
+    const auto s = static_cast<std::size_t>(section_[f]);
+    for (int k = 0; k < 3; ++k) {
+      add_by_numbers(specs_[s].thickness, inputs.shells[s].thickness.own(),
+                     reference_[nodes_.mesh.facets[f][k]], by_thickness[f][k],
+                     Vec3::Zero(), sums[s]);
+    }
+  }
+  return sums;
+}
+
+std::vector<shell::NodeSupport> node_supports(
+    const ShellPart& part, const loads::LoadCase& load_case) {
+  std::vector<shell::NodeSupport> supports;
+  for (const loads::Support& support : load_case.supports) {
+    std::set<int> nodes;
+    if (support.surface.find("/rim:") != std::string::npos) {
+      for (const std::array<int, 3>& edge : rim_of(part, support.surface)) {
+        nodes.insert(edge.begin(), edge.end());
+      }
+    } else {
+      const int label = part.skin.label_of(film_of(support.surface));
+      for (int f = 0; f < part.skin.face_count(); ++f) {
+        if (part.skin.face_label[f] == label) {
+          nodes.insert(part.skin.face(f).begin(), part.skin.face(f).end());
+        }
+      }
+    }
+    const auto& turn = support.fix_rotation;
+    for (const int node : nodes) {
+      supports.push_back({.node = node,
+                          .held = {support.fix_x, support.fix_y, support.fix_z,
+                                   turn[0], turn[1], turn[2]},
+                          .axes = support.axes});
+    }
+  }
+  return supports;
+}
+
+namespace {
+
+/// That of an earlier load case that is held alike, or a new one.
+std::shared_ptr<const shell::ShellSystem> system_of(
+    const case_data::EvaluatedCase& inputs, std::size_t load_case,
+    const ShellPart& part) {
+  const loads::LoadCase& own = inputs.load_cases[load_case];
+  for (std::size_t k = 0; k < load_case; ++k) {
+    if (inputs.load_cases[k].supports == own.supports) {
+      return part.cases[k].system;
+    }
+  }
+  return std::make_shared<shell::ShellSystem>(part.mesh, part.sections,
+                                              node_supports(part, own));
+}
+
+/// |reactions + loads| over the sum of |loads|, nodal forces all of them.
+double imbalance(const VectorX& forces, const VectorX& reactions) {
+  Vec3 left = Vec3::Zero();
+  double all = 0.0;
+  for (Eigen::Index i = 0; i < forces.size(); i += 6) {
+    left += forces.segment<3>(i) + reactions.segment<3>(i);
+    all += forces.segment<3>(i).norm();
+  }
+  return all > 0.0 ? left.norm() / all : 0.0;
+}
+
+void solve_case(const loads::LoadCase& load_case, ShellPart& part,
+                ShellCase& own, equations::ElasticSolution& solution) {
+  equations::ElasticReport& report = solution.report;
+  const Timer timer;
+  own.actions = shell_actions(part, load_case);
+  const shell::ShellSolution found = own.system->solve(own.actions.loads);
+  own.displacement = found.displacement;
+  const VectorX forces =
+      shell::nodal_forces(part.mesh, part.sections, own.actions.loads);
+  // Reactions of what is free are the residual.
+  const double size = forces.norm();
+  const double left = own.system->freedom().restrict(found.reaction).norm();
+  report.residual = std::max(report.residual, size > 0.0 ? left / size : left);
+  if (solution.displacements.empty()) {
+    report.dofs = own.system->freedom().unknowns();
+    report.strain_energy = found.strain_energy;
+    report.reaction_imbalance = imbalance(forces, found.reaction);
+  }
+  solution.displacements.push_back(displacements_of(found.displacement));
+  solution.reactions.push_back(displacements_of(found.reaction));
+  report.solve_seconds += timer.seconds();
+}
+
+}  // namespace
+
+equations::ElasticSolution solve_shell(const case_data::EvaluatedCase& inputs,
+                                       ShellPart& part) {
+  equations::ElasticSolution solution;
+  solution.report.solver = "cholmod";
+  part.cases.resize(inputs.load_cases.size());
+  try {
+    for (std::size_t k = 0; k < part.cases.size(); ++k) {
+      const Timer setup;
+      part.cases[k].system = system_of(inputs, k, part);
+      solution.report.setup_seconds += setup.seconds();
+      solve_case(inputs.load_cases[k], part, part.cases[k], solution);
+    }
+  } catch (const SolverError& error) {
+    solution.failure = Failure{FailureKind::SolverFailed, error.what()};
+  } catch (const InvalidInput& error) {
+    solution.failure = Failure{FailureKind::SolverFailed, error.what()};
+  }
+  return solution;
+}
+
+}  // namespace meniscus::shells

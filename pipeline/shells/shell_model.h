@@ -1,0 +1,62 @@
+/// The shells of a case on its film, frozen.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/geometry/surface_nodes.h"
+#include "evolve/frozen/film_model.h"
+#include "fea/elastic/elasticity.h"
+#include "fea/shell/shell_supports.h"
+#include "pipeline/case_data/case.h"
+#include "pipeline/shells/shell_part.h"
+
+namespace meniscus::shells {
+
+/// Facets of the meshed films, with the middles of their edges on the finer
+/// film. Films that share a line share its nodes. Facets are turned as those of
+/// walls are; the film takes its thickness along.
+class ShellModel {
+ public:
+  /// On the settled film that `film` is frozen at, of the design `inputs`.
+  /// Throws InvalidInput for shapes of thickness that its films do not have.
+  ShellModel(const case_data::Case& input,
+             const case_data::EvaluatedCase& inputs,
+             const frozen::FilmModel& film);
+
+  QuadraticSurface surface(const Points& film) const { return nodes_.at(film); }
+
+  /// The part of a design on its film, without solutions. Throws InvalidInput
+  /// for a thickness that is not above 0, and MeshError as check_shell().
+  std::shared_ptr<ShellPart> part(const case_data::EvaluatedCase& inputs,
+                                  const Points& film) const;
+
+  /// part() transposed: by all points of the film, and by the numbers of each
+  /// shell's thickness.
+  Points to_film(const Points& by_nodes, std::size_t points) const;
+  std::vector<VectorX> to_numbers(const case_data::EvaluatedCase& inputs,
+                                  const std::vector<Vec3>& by_thickness) const;
+
+ private:
+  double thickness_at(std::size_t shell, Numbers numbers, const Vec3& at) const;
+
+  SurfaceNodes nodes_;
+  std::vector<int> section_;                 // per facet: its shell
+  Points reference_;                         // per corner, of the frozen film
+  std::vector<walls::WallSpec> specs_;       // thicknesses have their shapes
+  std::vector<std::string> keys_;            // of thicknesses, for messages
+  std::map<std::string, shell::Line> rims_;  // as ShellPart has them
+};
+
+/// What holds the nodes of the part. Throws InvalidInput for a rim of no edge.
+std::vector<shell::NodeSupport> node_supports(const ShellPart& part,
+                                              const loads::LoadCase& load_case);
+
+/// Solves all load cases, those held alike with one factor. A shell that can
+/// move is a failure.
+equations::ElasticSolution solve_shell(const case_data::EvaluatedCase& inputs,
+                                       ShellPart& part);
+
+}  // namespace meniscus::shells
