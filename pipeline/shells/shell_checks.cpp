@@ -208,6 +208,7 @@ class ShellChecks {
     if (!row.of_films &&
         std::find(kinds.begin(), kinds.end(), response.kind) == kinds.end()) {
       std::vector<std::string> names;
+      names.reserve(kinds.size());
       for (const case_data::ResponseKind kind : kinds) {
         names.emplace_back(case_data::row_of(kind).name);
       }
