@@ -174,13 +174,7 @@ std::vector<Side> sides_of(const SplitFilm& split, int cell,
                            const std::vector<int>& facets) {
   const bool tubes = split.rims->size() > 1;
   // A directed edge belongs to one facet; its reverse is the facet across.
-  std::map<Edge, int> owner;
-  for (std::size_t f = 0; f < split.film.mesh.facets.size(); ++f) {
-    const Triangle& t = split.film.mesh.facets[f];
-    for (int k = 0; k < 3; ++k) {
-      owner[{t[k], t[(k + 1) % 3]}] = static_cast<int>(f);
-    }
-  }
+  const std::map<Edge, int> owner = facets_by_edge(split.film.mesh.facets);
   // The outline of a disk is one closed loop.
   const std::vector<std::vector<int>> loops = boundary_loops(
       corners_of(split.film.mesh, facets), split.film.mesh.points);

@@ -77,17 +77,6 @@ Vec3 fitted_normal(const FilmMesh& mesh, const Vec3& p, const Vec3& normal,
 constexpr double kFold = 0.5;      // cosine between the facets of an edge
 constexpr double kFlatter = 1e-6;  // what a flip has to gain
 
-/// Facets by their directed edges.
-std::map<Edge, int> facets_by_edge(const std::vector<Triangle>& facets) {
-  std::map<Edge, int> owner;
-  for (std::size_t f = 0; f < facets.size(); ++f) {
-    for (int k = 0; k < 3; ++k) {
-      owner[{facets[f][k], facets[f][(k + 1) % 3]}] = static_cast<int>(f);
-    }
-  }
-  return owner;
-}
-
 int corner_opposite(const Triangle& t, int a, int b) {
   return t[0] + t[1] + t[2] - a - b;
 }
@@ -164,6 +153,16 @@ class FoldFlipper {
 };
 
 }  // namespace
+
+std::map<Edge, int> facets_by_edge(const std::vector<Triangle>& facets) {
+  std::map<Edge, int> owner;
+  for (std::size_t f = 0; f < facets.size(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      owner[{facets[f][k], facets[f][(k + 1) % 3]}] = static_cast<int>(f);
+    }
+  }
+  return owner;
+}
 
 void flip_folds(FilmMesh& mesh) {
   FoldFlipper flipper(mesh);

@@ -18,6 +18,9 @@ struct FilmMesh {
   std::map<Edge, Vec3> bulges;
 };
 
+/// Facets by their directed edges.
+std::map<Edge, int> facets_by_edge(const std::vector<Triangle>& facets);
+
 /// Flips edges whose facets lie back to back (by more than 60 degrees) where
 /// the film gets flatter: beside a corner of its rim facets can hang over the
 /// rim.

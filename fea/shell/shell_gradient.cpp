@@ -5,16 +5,13 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "core/math/taped.h"
 #include "core/parallel_for.h"
 #include "fea/shell/facet_loads.h"
-#include "fea/shell/facet_matrices.h"
+#include "fea/shell/taped_facet.h"
 
 namespace meniscus::shell {
 
 namespace {
-
-constexpr int kInputs = 3 * kNodes + 3;  // nodes' places, thicknesses
 
 /// One of the two fields, with its bubble.
 struct WholeField {
@@ -34,6 +31,14 @@ struct TapedPoint {
   const std::array<Triple<Taped>, kNodes>& X;
   TapedWall wall;
 };
+
+TapedPoint taped_point(const Facet& facet, const TapedFacet& taped,
+                       const FacetPoint& p) {
+  return {facet,
+          p,
+          taped.X,
+          {facet_frame(taped.X, p, facet.direction), taped.thickness_at(p)}};
+}
 
 /// visit(zeta, weight, inverse of the shifter, layer) through the thickness,
 /// the weight per area of the surface.
@@ -163,7 +168,7 @@ Taped edge_work(const std::array<Triple<Taped>, kNodes>& X,
 
 struct FacetGradient {
   double value = 0.0;
-  std::array<double, kInputs> by_input = {};
+  ByShape by = {};
 };
 
 /// The state equation's data and the two fields of one facet.
@@ -176,46 +181,51 @@ struct FacetResidual {
 
 FacetGradient facet_gradient(const FacetResidual& residual, Tape& tape) {
   const Facet& facet = residual.facet;
-  tape.clear();
-  std::array<Triple<Taped>, kNodes> X;
-  for (int i = 0; i < kNodes; ++i) {
-    for (int c = 0; c < 3; ++c) {
-      X[i][c] = tape.input(facet.nodes[i][c], 0.0);
-    }
-  }
-  std::array<Taped, 3> t;
-  for (int c = 0; c < 3; ++c) {
-    t[c] = tape.input(facet.thickness[c], 0.0);
-  }
-  const auto axes = bubble_axes(X);
-  const auto bubble = [&](const WholeField& field) {
-    return plus(times(field.bubble[0], axes[0]), field.bubble[1], axes[1]);
-  };
-  const Triple<Taped> of_v = bubble(residual.v);
-  const Triple<Taped> of_u = bubble(residual.u);
+  const TapedFacet taped(facet, tape);
+  const Triple<Taped> of_v = taped.bubble(residual.v.bubble);
+  const Triple<Taped> of_u = taped.bubble(residual.u.bubble);
   const WallState state = wall_state(residual.loads, residual.own);
-  Taped sum = edge_work(X, residual.own, residual.v);
+  Taped sum = edge_work(taped.X, residual.own, residual.v);
   for (const FacetPoint& p : facet_rule()) {
-    const Vec3 share = corner_shares(p);
-    const TapedPoint at = {
-        facet,
-        p,
-        X,
-        {facet_frame(X, p, facet.direction),
-         share[0] * t[0] + share[1] * t[1] + share[2] * t[2]}};
+    const TapedPoint at = taped_point(facet, taped, p);
     const FacetFrame<Taped>& frame = at.wall.frame;
-    const Taped inner =
-        inner_work(at, state, facet_strain(X, p, frame, residual.v.nodes, of_v),
-                   facet_strain(X, p, frame, residual.u.nodes, of_u));
+    const Taped inner = inner_work(
+        at, state, facet_strain(taped.X, p, frame, residual.v.nodes, of_v),
+        facet_strain(taped.X, p, frame, residual.u.nodes, of_u));
     const Taped outer =
         outer_work(at, residual.loads, residual.own, residual.v, of_v);
     sum = sum + p.weight * frame.area * (outer - inner);
   }
-  FacetGradient result;
-  result.value = sum.value;
-  std::array<double, kInputs> by_rates = {};
-  tape.transpose(sum, 1.0, 0.0, result.by_input, by_rates);
-  return result;
+  return {sum.value, taped.transpose(sum)};
+}
+
+/// The sum of the facets, in their order.
+ShellGradient gradient_of(const ShellMesh& mesh,
+                          const std::vector<FacetGradient>& parts) {
+  ShellGradient gradient;
+  gradient.by_nodes.assign(mesh.nodes.size(), Vec3::Zero());
+  gradient.by_thickness.assign(mesh.facets.size(), Vec3::Zero());
+  for (std::size_t f = 0; f < parts.size(); ++f) {
+    gradient.value += parts[f].value;
+    add_by_shape(mesh, static_cast<int>(f), parts[f].by, gradient);
+  }
+  return gradient;
+}
+
+FacetGradient facet_mass_gradient(const Facet& facet, Tape& tape) {
+  const TapedFacet taped(facet, tape);
+  Taped mass(0.0);
+  for (const FacetPoint& p : facet_rule()) {
+    const TapedPoint at = taped_point(facet, taped, p);
+    Taped density(0.0);
+    for_each_taped_layer(
+        at, [&](const Taped&, const Taped& weight, const Square<Taped>&,
+                const LayerPoint& layer) {
+          density = density + facet.law->plies[layer.ply].density * weight;
+        });
+    mass = mass + p.weight * at.wall.frame.area * density;
+  }
+  return {mass.value, taped.transpose(mass)};
 }
 
 void add_edge_gradient(const ShellMesh& mesh, const EdgeLoad& load,
@@ -275,17 +285,7 @@ ShellGradient residual_gradient(
                             field(u, facet_forces(facet, loads, acting[k]))},
                            tape);
       });
-  ShellGradient gradient;
-  gradient.by_nodes.assign(mesh.nodes.size(), Vec3::Zero());
-  for (std::size_t f = 0; f < parts.size(); ++f) {
-    const auto& by = parts[f].by_input;
-    gradient.value += parts[f].value;
-    for (int i = 0; i < kNodes; ++i) {
-      gradient.by_nodes[mesh.facets[f][i]] +=
-          Vec3(by[3 * i], by[3 * i + 1], by[3 * i + 2]);
-    }
-    gradient.by_thickness.emplace_back(by[18], by[19], by[20]);
-  }
+  ShellGradient gradient = gradient_of(mesh, parts);
   for (const EdgeLoad& load : loads.edges) {
     add_edge_gradient(mesh, load, v, gradient);
   }
@@ -297,14 +297,16 @@ ShellGradient residual_gradient(
 
 ShellGradient shell_mass(const ShellMesh& mesh,
                          const std::vector<Section>& sections) {
-  const auto count = static_cast<Eigen::Index>(6 * mesh.nodes.size());
-  VectorX up = VectorX::Zero(count);
-  for (Eigen::Index i = 0; i < count; i += 6) {
-    up[i] = 1.0;
-  }
-  ShellLoads weight;
-  weight.gravity = Vec3::UnitX();
-  return residual_gradient(mesh, sections, weight, up, VectorX::Zero(count));
+  check_shell(mesh, sections);
+  const std::vector<LaminateLaw> laws = laminate_laws(sections);
+  std::vector<FacetGradient> parts(mesh.facets.size());
+  parallel_for(static_cast<std::ptrdiff_t>(parts.size()),
+               [&](std::ptrdiff_t k) {
+                 static thread_local Tape tape;
+                 parts[k] = facet_mass_gradient(
+                     facet_of(mesh, sections, laws, static_cast<int>(k)), tape);
+               });
+  return gradient_of(mesh, parts);
 }
 
 }  // namespace meniscus::shell

@@ -28,8 +28,7 @@ ShellGradient residual_gradient(
     const ShellLoads& loads, const VectorX& v, const VectorX& u,
     const std::vector<Eigen::Vector2d>* on_bubbles = nullptr);
 
-/// Mass with its derivatives: the work of a unit of weight on a unit of
-/// displacement. Throws as residual_gradient().
+/// Mass with its derivatives. Throws as ShellSystem does.
 ShellGradient shell_mass(const ShellMesh& mesh,
                          const std::vector<Section>& sections);
 

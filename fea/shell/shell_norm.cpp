@@ -7,17 +7,13 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "core/math/taped.h"
 #include "core/parallel_for.h"
 #include "fea/shell/facet_loads.h"
-#include "fea/shell/facet_matrices.h"
-#include "fea/shell/shell_gradient.h"
+#include "fea/shell/taped_facet.h"
 
 namespace meniscus::shell {
 
 namespace {
-
-constexpr int kNormInputs = 3 * kNodes + 3;  // nodes' places, thicknesses
 
 /// Exact to degree two.
 const std::array<FacetPoint, 3>& norm_points() {
@@ -82,6 +78,7 @@ struct SolvedFacet {
   WallState state;
   FacetField field;
   Eigen::Vector2d bubble;
+  WholeMatrix stiffness;
 };
 
 FaceSquares squares_of(const SolvedFacet& solved) {
@@ -125,36 +122,23 @@ struct NormTerms {
 };
 
 struct FacetNormGradient {
-  std::array<double, kNormInputs> by_input = {};
+  ByShape by_shape = {};
   WholeVector by_whole = WholeVector::Zero();  // with the bubble's two numbers
 };
 
 /// By places and thicknesses, nodes' numbers and bubble held.
-void add_by_shape(const SolvedFacet& solved, const NormTerms& terms, Tape& tape,
-                  FacetNormGradient& gradient) {
+ByShape norm_by_shape(const SolvedFacet& solved, const NormTerms& terms,
+                      Tape& tape) {
   const Facet& facet = solved.facet;
-  tape.clear();
-  std::array<Triple<Taped>, kNodes> X;
-  for (int i = 0; i < kNodes; ++i) {
-    for (int c = 0; c < 3; ++c) {
-      X[i][c] = tape.input(facet.nodes[i][c], 0.0);
-    }
-  }
-  std::array<Taped, 3> t;
-  for (int c = 0; c < 3; ++c) {
-    t[c] = tape.input(facet.thickness[c], 0.0);
-  }
-  const auto axes = bubble_axes(X);
-  const Triple<Taped> bubble =
-      plus(times(solved.bubble[0], axes[0]), solved.bubble[1], axes[1]);
+  const TapedFacet taped(facet, tape);
+  const Triple<Taped> bubble = taped.bubble(solved.bubble);
   const std::array<WallFace, 2> faces = faces_of(facet, solved.state);
   Taped sum(0.0);
   for (const FacetPoint& p : norm_points()) {
-    const FacetFrame<Taped> frame = facet_frame(X, p, facet.direction);
+    const FacetFrame<Taped> frame = facet_frame(taped.X, p, facet.direction);
     const FacetStrain<Taped> strain =
-        facet_strain(X, p, frame, solved.field, bubble);
-    const Vec3 share = corner_shares(p);
-    const Taped thickness = share[0] * t[0] + share[1] * t[1] + share[2] * t[2];
+        facet_strain(taped.X, p, frame, solved.field, bubble);
+    const Taped thickness = taped.thickness_at(p);
     Taped here(terms.by_area);
     for (const WallFace& face : faces) {
       const Taped zeta = (face.at + facet.offset) * thickness;
@@ -166,8 +150,7 @@ void add_by_shape(const SolvedFacet& solved, const NormTerms& terms, Tape& tape,
     }
     sum = sum + kPointWeight * frame.area * here;
   }
-  std::array<double, kNormInputs> by_rates = {};
-  tape.transpose(sum, 1.0, 0.0, gradient.by_input, by_rates);
+  return taped.transpose(sum);
 }
 
 /// By the stresses of a face: from the square's derivative to the strain in
@@ -278,17 +261,13 @@ class NormOfShell {
     return static_cast<std::ptrdiff_t>(mesh_.facets.size());
   }
 
-  WholeMatrix stiffness(int f) const {
-    return whole_stiffness(facet_of(mesh_, sections_, laws_, f));
-  }
-
   SolvedFacet solved(int f) const {
     const Facet facet = facet_of(mesh_, sections_, laws_, f);
     const FacetVector u = numbers_of(mesh_, f, u_);
+    const WholeMatrix K = whole_stiffness(facet);
     return {facet, wall_state(loads_, own_[f]),
             Eigen::Map<const FacetField>(u.data()),
-            bubble_rotation(whole_stiffness(facet),
-                            facet_forces(facet, loads_, own_[f]), u)};
+            bubble_rotation(K, facet_forces(facet, loads_, own_[f]), u), K};
   }
 
   void add_derivatives(const NormTerms& terms, StressNorm& norm) const {
@@ -297,30 +276,28 @@ class NormOfShell {
     parallel_for(count(), [&](std::ptrdiff_t k) {
       static thread_local Tape tape;
       const SolvedFacet facet = solved(static_cast<int>(k));
-      add_by_shape(facet, terms, tape, parts[k]);
+      parts[k].by_shape = norm_by_shape(facet, terms, tape);
       add_by_unknowns(facet, terms, parts[k]);
       // The bubble follows the nodes: condensed as forces are.
       on_bubbles[k] = parts[k].by_whole.tail<2>();
-      condensed(stiffness(static_cast<int>(k)), &parts[k].by_whole);
+      condensed(facet.stiffness, &parts[k].by_whole);
     });
     // And places and thicknesses: its equilibrium, to which its derivatives are
     // the adjoint's forces.
     const VectorX none = VectorX::Zero(u_.size());
     ShellGradient state =
         residual_gradient(mesh_, sections_, loads_, none, u_, &on_bubbles);
-    norm.by_nodes = std::move(state.by_nodes);
-    norm.by_thickness = std::move(state.by_thickness);
     norm.by_displacement = none;
     for (std::size_t f = 0; f < parts.size(); ++f) {
-      const auto& by = parts[f].by_input;
+      add_by_shape(mesh_, static_cast<int>(f), parts[f].by_shape, state);
       for (int i = 0; i < kNodes; ++i) {
         const int node = mesh_.facets[f][i];
-        norm.by_nodes[node] += Vec3(by[3 * i], by[3 * i + 1], by[3 * i + 2]);
         norm.by_displacement.segment<6>(6L * node) +=
             parts[f].by_whole.segment<6>(6L * i);
       }
-      norm.by_thickness[f] += Vec3(by[18], by[19], by[20]);
     }
+    norm.by_nodes = std::move(state.by_nodes);
+    norm.by_thickness = std::move(state.by_thickness);
   }
 
   const ShellMesh& mesh_;

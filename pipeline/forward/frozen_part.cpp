@@ -297,7 +297,7 @@ void adapt(const case_data::EvaluatedCase& inputs, Monitor& monitor,
 }
 
 /// All that is frozen of them are their facets on the film.
-bool freeze_shells(const case_data::EvaluatedCase& inputs, FrozenPart& part) {
+void freeze_shells(const case_data::EvaluatedCase& inputs, FrozenPart& part) {
   const StageMeter meter;
   part.shells.emplace(part.input, inputs, *part.film);
   const QuadraticSurface surface =
@@ -305,7 +305,6 @@ bool freeze_shells(const case_data::EvaluatedCase& inputs, FrozenPart& part) {
   part.start.tet = figures_of(surface);
   require_shell_work(surface.base.facets.size(), inputs.fea_edge);
   meter.add_to(part.start.seconds.mesh, part.start.operations.mesh);
-  return true;
 }
 
 Monitor& monitor_of(const ForwardModelOptions& options) {
@@ -319,7 +318,8 @@ bool fill_film(const case_data::EvaluatedCase& inputs,
     return false;
   }
   if (!inputs.shells.empty()) {
-    return freeze_shells(inputs, part);
+    freeze_shells(inputs, part);
+    return true;
   }
   if (!part.input.analysis.adapt) {  // else with the facets that err
     split_facets(tight_facets(inputs, part), part);

@@ -7,6 +7,7 @@
 
 #include "pipeline/case_data/case_values.h"
 #include "pipeline/case_data/response_kinds.h"
+#include "pipeline/shells/shell_part.h"
 
 namespace meniscus::shells {
 
@@ -20,10 +21,6 @@ const std::vector<case_data::ResponseKind>& kinds_of_shells() {
       K::Volume,           K::MaxVonMises,      K::VonMisesNorm,
       K::Envelope,         K::Expression};
   return kinds;
-}
-
-bool is_rim(const std::string& surface) {
-  return surface.find("/rim:") != std::string::npos;
 }
 
 bool has_rim(const loads::Surfaces& surfaces) {

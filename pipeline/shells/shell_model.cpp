@@ -197,7 +197,7 @@ std::vector<shell::NodeSupport> node_supports(
   std::vector<shell::NodeSupport> supports;
   for (const loads::Support& support : load_case.supports) {
     std::set<int> nodes;
-    if (support.surface.find("/rim:") != std::string::npos) {
+    if (is_rim(support.surface)) {
       for (const std::array<int, 3>& edge : rim_of(part, support.surface)) {
         nodes.insert(edge.begin(), edge.end());
       }

@@ -50,7 +50,7 @@ void add_rim_force(const ShellPart& part, const RimForce& force,
 loads::LoadCase on_films(const loads::LoadCase& load_case) {
   loads::LoadCase result{.name = load_case.name};
   for (loads::SurfaceForce force : load_case.forces) {
-    if (force.surfaces.front().find("/rim:") == std::string::npos) {
+    if (!is_rim(force.surfaces.front())) {
       force.surfaces = films_of(force.surfaces);
       result.forces.push_back(std::move(force));
     }
@@ -75,7 +75,7 @@ ShellActions without_nodal(const ShellPart& part,
     add_pressure(part, pressure, result.loads);
   }
   for (const loads::SurfaceForce& force : load_case.forces) {
-    if (force.surfaces.front().find("/rim:") != std::string::npos) {
+    if (is_rim(force.surfaces.front())) {
       result.rims.push_back({force.surfaces.front(), force.total});
       add_rim_force(part, result.rims.back(), result.loads);
     }
@@ -89,6 +89,10 @@ bool acts_on_films(const loads::LoadCase& load_case) {
 }
 
 }  // namespace
+
+bool is_rim(const std::string& surface) {
+  return surface.find("/rim:") != std::string::npos;
+}
 
 std::string film_of(const std::string& surface) {
   constexpr std::string_view kBack = "/back";

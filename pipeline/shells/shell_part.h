@@ -50,6 +50,8 @@ struct ShellPart {
   std::vector<ShellCase> cases;             // per load case
 };
 
+/// "FILM/rim:CURVE".
+bool is_rim(const std::string& surface);
 /// "FILM" of "FILM/back" and "FILM/rim:CURVE".
 std::string film_of(const std::string& surface);
 

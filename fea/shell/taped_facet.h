@@ -1,0 +1,38 @@
+/// A facet whose nodes and thicknesses are inputs of a tape: what is computed
+/// from them has its derivatives by both.
+#pragma once
+
+#include <array>
+
+#include "core/math/taped.h"
+#include "fea/shell/facet_matrices.h"
+#include "fea/shell/shell_gradient.h"
+
+namespace meniscus::shell {
+
+inline constexpr int kShapeInputs = 3 * kNodes + 3;  // places, thicknesses
+using ByShape = std::array<double, kShapeInputs>;
+
+struct TapedFacet {
+  /// Clears the tape, which is not owned.
+  TapedFacet(const Facet& facet, Tape& tape);
+
+  Taped thickness_at(const FacetPoint& p) const;
+  /// A bubble's rotation by its two numbers.
+  Triple<Taped> bubble(const Eigen::Vector2d& numbers) const;
+  /// The result's derivatives by places and thicknesses.
+  ByShape transpose(const Taped& result) const;
+
+  std::array<Triple<Taped>, kNodes> X;
+  std::array<Taped, 3> thickness;  // at the corners
+
+ private:
+  Tape* tape_;
+  std::array<Triple<Taped>, 2> axes_;  // of the bubble
+};
+
+/// Adds those of facet f to its nodes' and corners'; these have their length.
+void add_by_shape(const ShellMesh& mesh, int f, const ByShape& by,
+                  ShellGradient& gradient);
+
+}  // namespace meniscus::shell
