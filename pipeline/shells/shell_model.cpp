@@ -1,7 +1,9 @@
 #include "pipeline/shells/shell_model.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 #include <set>
 
 #include <fmt/format.h>
@@ -37,37 +39,51 @@ SurfaceNodes nodes_of(const walls::WallFilms& films) {
                        straight);
 }
 
-/// The film's edges of which both ends and the middle are on the curve.
-Line edges_on(const SurfaceNodes& nodes, int label,
-              const std::set<int>& vertices) {
-  const auto corners = static_cast<int>(nodes.corner.size());
-  std::set<int> taken;
-  Line line;
-  for (std::size_t f = 0; f < nodes.mesh.facets.size(); ++f) {
-    for (int k = 0; k < 3 && nodes.mesh.facet_label[f] == label; ++k) {
-      const int a = nodes.mesh.facets[f][k];
-      const int b = nodes.mesh.facets[f][(k + 1) % 3];
-      const int edge = nodes.facet_edges[f][k];
-      if (vertices.contains(nodes.corner[a]) &&
-          vertices.contains(nodes.corner[b]) &&
-          vertices.contains(nodes.mid[edge]) && taken.insert(edge).second) {
-        line.push_back({a, b, corners + edge});
+/// Per point: the rims that it is on, ascending.
+std::map<int, std::vector<int>> rims_at(const walls::WallFilms& films) {
+  std::map<int, std::vector<int>> rims;
+  for (std::size_t n = 0; n < films.names.size(); ++n) {
+    for (const int v : films.names[n].vertices) {
+      std::vector<int>& at = rims[v];
+      if (at.empty() || at.back() != static_cast<int>(n)) {
+        at.push_back(static_cast<int>(n));
       }
     }
   }
-  return line;
+  return rims;
 }
 
+/// The films' edges of which both ends and the middle are on a curve.
 std::map<std::string, Line> rims_of(const walls::WallFilms& films,
                                     const SurfaceNodes& nodes) {
+  const std::map<int, std::vector<int>> at = rims_at(films);
+  const auto kept = [&](const std::vector<int>& rims, int v) {
+    std::vector<int> common;
+    if (const auto there = at.find(v); there != at.end()) {
+      std::set_intersection(rims.begin(), rims.end(), there->second.begin(),
+                            there->second.end(), std::back_inserter(common));
+    }
+    return common;
+  };
+  const auto corners = static_cast<int>(nodes.corner.size());
   std::map<std::string, Line> rims;
-  for (std::size_t label = 0; label < films.mesh.labels.size(); ++label) {
-    for (const walls::RimName& name : films.names) {
-      const Line line = edges_on(nodes, static_cast<int>(label),
-                                 {name.vertices.begin(), name.vertices.end()});
-      if (!line.empty()) {
-        Line& rim = rims[films.mesh.labels[label] + "/rim:" + name.curve];
-        rim.insert(rim.end(), line.begin(), line.end());
+  std::set<std::array<int, 3>> taken;  // of a film, a rim and an edge
+  for (std::size_t f = 0; f < nodes.mesh.facets.size(); ++f) {
+    const int label = nodes.mesh.facet_label[f];
+    for (int k = 0; k < 3; ++k) {
+      const int a = nodes.mesh.facets[f][k];
+      const int b = nodes.mesh.facets[f][(k + 1) % 3];
+      const int edge = nodes.facet_edges[f][k];
+      const auto first = at.find(nodes.corner[a]);
+      if (first == at.end()) {
+        continue;
+      }
+      for (const int n :
+           kept(kept(first->second, nodes.corner[b]), nodes.mid[edge])) {
+        if (taken.insert({label, n, edge}).second) {
+          rims[films.mesh.labels[label] + "/rim:" + films.names[n].curve]
+              .push_back({a, b, corners + edge});
+        }
       }
     }
   }
@@ -122,6 +138,7 @@ ShellModel::ShellModel(const case_data::Case& input,
                                 entry.name));
   }
   rims_ = rims_of(films, nodes_);
+  straighten_folded(nodes_, points);
 }
 
 double ShellModel::thickness_at(std::size_t shell, Numbers numbers,
