@@ -388,8 +388,9 @@ namespace {
 
 /// The largest theta of A x = theta K x, descending, by subspace iteration
 /// (Bathe 1971); lower triangles.
+template <class Factor>
 VectorX largest(const SparseMatrix& A, const SparseMatrix& K,
-                const SymmetricFactor& factor, int count) {
+                const Factor& factor, int count) {
   const int block = 2 * count + 8;
   const auto a = A.selfadjointView<Eigen::Lower>();
   const auto k = K.selfadjointView<Eigen::Lower>();
