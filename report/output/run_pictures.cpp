@@ -90,6 +90,10 @@ void add_supports(const case_data::Case& input,
     if (std::ranges::find(cut, support.surface) != cut.end()) {
       continue;  // within the whole
     }
+    if (support.at) {
+      job.load_case += ", held at a point";
+      continue;
+    }
     job.supports.push_back(support.surface);
     job.support_labels.push_back(support_label(support));
   }
@@ -157,7 +161,9 @@ void add_body_loads(const loads::LoadCase& load_case,
   for (const auto& [acts, what] :
        {std::pair(load_case.spin.has_value(), ", it spins"),
         std::pair(load_case.temperature.has_value(), ", it is heated"),
-        std::pair(varied, ", a traction that varies")}) {
+        std::pair(varied, ", a traction that varies"),
+        std::pair(!load_case.rim_tensions.empty(),
+                  ", rims pulled or pressed")}) {
     job.load_case += acts ? what : "";
   }
 }
