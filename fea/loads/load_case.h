@@ -46,6 +46,13 @@ struct SurfaceTraction {
   MatrixOfPlace slope;  // dt_i/dx_j of the field, for derivatives only
 };
 
+/// Of shells: force per length of a film's rim along its conormal, in the film
+/// and out of it where it is positive [force/length].
+struct RimTension {
+  std::string rim;
+  double tension = 0.0;
+};
+
 /// A force at a point and a moment, carried by surfaces together without
 /// stiffening them: the nodal forces are those of the same force and moment
 /// that are least in the norm weighted by area (RBE3).
@@ -91,6 +98,7 @@ struct LoadCase {
   std::vector<SurfaceForce> forces;
   std::vector<SurfacePressure> pressures;
   std::vector<SurfaceTraction> tractions;
+  std::vector<RimTension> rim_tensions;
   std::vector<RemoteLoad> remote_loads;
   std::vector<BearingLoad> bearings;
   Vec3 gravity = Vec3::Zero();  // force per mass [length/time^2]

@@ -32,6 +32,9 @@ struct Support {
   std::optional<Vec3> displacement = {};
   /// Of shells: rotations about the same axes, held at 0.
   std::array<bool, 3> fix_rotation = {};
+  /// Of shells: holds the surface's node that is nearest to it, and no other
+  /// [length].
+  std::optional<Vec3> at = {};
 
   bool operator==(const Support&) const = default;
 };

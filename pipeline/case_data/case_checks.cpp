@@ -226,7 +226,7 @@ bool is_held(const loads::LoadCase& load_case, const std::string& surface,
              const Vec3& push) {
   std::array<bool, 3> fixed = {false, false, false};
   for (const loads::Support& support : load_case.supports) {
-    if (support.surface != surface ||
+    if (support.surface != surface || support.at ||
         support.kind != loads::SupportKind::Components) {
       continue;
     }

@@ -313,6 +313,7 @@ enum class LoadKind {
   Remote,  // force or moment through a point
   Pressure,
   Traction,
+  RimTension,  // of shells
   Gravity,
   Spin,
   Temperature,
@@ -340,6 +341,7 @@ struct LoadEntry {
   PlaceQuantity place;                 // pressure, temperature
   std::array<PlaceQuantity, 3> traction;
   Quantity number;               // rate of spin, reference temperature, tension
+                                 // of a bolt or a rim
   std::optional<Quantity> size;  // of a force from any direction in the cone
   Cone cone;
   SourceLine line = 0;
@@ -356,7 +358,7 @@ struct DirectionsEntry {
 /// The numbers of a support are here, not in its struct.
 struct SupportEntry {
   loads::Support support;
-  std::optional<QuantityVector> displacement;
+  std::optional<QuantityVector> displacement, at;
   SourceLine line = 0;
 };
 

@@ -70,6 +70,7 @@ loads::Support support_of(const SupportEntry& entry, const CaseValues& values) {
   require_fixed(entry.displacement,
                 {support.fix_x, support.fix_y, support.fix_z}, "fix", values);
   support.displacement = value_of(entry.displacement, values);
+  support.at = value_of(entry.at, values);
   return support;
 }
 
@@ -163,6 +164,11 @@ void add_load(const LoadEntry& load, const CaseValues& values,
       }
       break;
     }
+    case LoadKind::RimTension:
+      for (const std::string& surface : load.surfaces) {
+        result.rim_tensions.push_back({surface, values.at(load.number)});
+      }
+      break;
     case LoadKind::Gravity:
       result.gravity += values.at(load.vector);
       break;
@@ -276,6 +282,9 @@ bool is_loaded(const loads::LoadCase& load_case) {
                      [](const auto& p) {
                        return p.field || p.traction.norm() > 0.0;
                      }) ||
+         std::any_of(load_case.rim_tensions.begin(),
+                     load_case.rim_tensions.end(),
+                     [](const auto& r) { return r.tension != 0.0; }) ||
          std::any_of(load_case.remote_loads.begin(),
                      load_case.remote_loads.end(), [](const auto& r) {
                        return r.force.norm() + r.moment.norm() > 0.0;

@@ -48,8 +48,9 @@ void read_fix(CaseContext& context, const CaseTable& table,
               case_data::SupportEntry& entry) {
   loads::Support& support = entry.support;
   const auto fix = table.text("fix");
-  refuse_foreign(context, table, {"at", "rotation"},
+  refuse_foreign(context, table, {"rotation"},
                  "a support by nodes (by = \"rigid\" has it)");
+  entry.at = table.vector("at");
   support.fix_rotation =
       components_of(context, table, "fix_rotation", "\"xyz\"");
   if (!fix) {
@@ -151,7 +152,7 @@ void read_support(CaseContext& context, const CaseTable& table,
     entry.line = table.line();
     read_fix(context, table, entry);
     if (!turns) {
-      refuse_foreign(context, table, {"fix_rotation"},
+      refuse_foreign(context, table, {"at", "fix_rotation"},
                      "a support by nodes (by = \"rigid\" and shells have it)");
     }
     for (const std::string& surface : surfaces) {
@@ -229,6 +230,7 @@ const std::vector<LoadRow>& load_kinds() {
        {"at", "by", "within", "about"}},
       {"pressure", case_data::LoadKind::Pressure, true, {}},
       {"traction", case_data::LoadKind::Traction, true, {}},
+      {"rim_tension", case_data::LoadKind::RimTension, true, {}},
       {"gravity", case_data::LoadKind::Gravity, false, {}},
       {"spin", case_data::LoadKind::Spin, false, {"at", "axis"}},
       {"temperature", case_data::LoadKind::Temperature, false, {"reference"}}};
@@ -460,7 +462,14 @@ void read_load(CaseContext& context, const CaseTable& table,
     load.traction = *std::move(traction);
   }
   load.number = table.quantity_or_zero(
-      load.kind == case_data::LoadKind::Spin ? "spin" : "reference");
+      load.kind == case_data::LoadKind::Spin         ? "spin"
+      : load.kind == case_data::LoadKind::RimTension ? "rim_tension"
+                                                     : "reference");
+  if (load.kind == case_data::LoadKind::RimTension && result.shells.empty()) {
+    note(
+        context, table, "rim_tension",
+        "is of [shells]; give the surface of a solid a pressure or a traction");
+  }
   load_case.loads.push_back(std::move(load));
 }
 
@@ -515,7 +524,8 @@ TableSpec load_table() {
                   either_of(load_names(true)), either_of(load_names(false))),
       {{"on", K::NameOrNames, D::None, false,
         fmt::format("of {}: the surface that is loaded, or a list: force and "
-                    "moment are of all together, pressure and traction of each",
+                    "moment are of all together, pressure, traction and "
+                    "rim_tension of each",
                     fmt::join(load_names(true), ", "))},
        {"force", K::Vector, D::Force, false,
         "total, spread as uniform traction; with `at` through that point"},
@@ -539,6 +549,9 @@ TableSpec load_table() {
         "spread|rigid|bearing"},
        {"pressure", K::Place, D::Pressure, false, "positive into the material"},
        {"traction", K::PlaceVector, D::Pressure, false, "force per area"},
+       {"rim_tension", K::Quantity, D::Tension, false,
+        "of rims of shells: force per length in the film, across its rim and "
+        "out of it; below 0 it presses"},
        {"gravity", K::Vector, D::Acceleration, false, "force per mass"},
        {"spin", K::Quantity, D::Rate, false,
         "angular velocity in radians per time"},

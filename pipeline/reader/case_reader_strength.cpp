@@ -145,8 +145,11 @@ std::vector<int> read_parts(CaseContext& context, const CaseTable& table,
                     "a list of them",
                     table.path(), table.has("of") ? "both" : "none"));
   } else if (table.has("of")) {
-    const auto of =
-        response_above(context, table, "of", *table.text("of"), result);
+    const std::optional<std::string> name = table.text("of");
+    if (!name) {
+      return parts;
+    }
+    const auto of = response_above(context, table, "of", *name, result);
     const std::vector<AskedCase> load_cases =
         read_load_cases_of(context, table, result);
     if (!of) {

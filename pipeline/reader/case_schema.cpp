@@ -163,7 +163,9 @@ std::vector<TableSpec> make_tables() {
          "nodes: each by itself (when left out); rigid: the surfaces move as "
          "one rigid body, whose point `at` fix holds",
          "nodes|rigid"},
-        {"at", K::Vector, D::Length, false, "of rigid: the point"},
+        {"at", K::Vector, D::Length, false,
+         "of rigid: the point; of shells: the surface's node nearest to it "
+         "alone is held"},
         {"fix_rotation", K::Text, D::None, false,
          "of rigid, and of shells: rotations that are held, some of "
          "\"xyz\""},

@@ -49,6 +49,13 @@ class ShellChecks {
   }
 
  private:
+  bool follows_design(const case_data::QuantityVector& numbers) const {
+    std::vector<std::string> found;
+    return case_data::CaseValues(input_, case_data::initial_design(input_),
+                                 found)
+        .follows_design(numbers);
+  }
+
   void check_part() {
     const case_data::ShellEntry& first = input_.shells.front();
     if (!input_.walls.empty()) {
@@ -133,6 +140,8 @@ class ShellChecks {
         refuse(support.line, "a support along normals");
       } else if (support.displacement) {
         refuse(support.line, "an enforced displacement");
+      } else if (support.at && follows_design(*support.at)) {
+        refuse(support.line, "a support at a point that follows the design");
       }
     }
     if (!load_case.springs.empty()) {
@@ -168,13 +177,19 @@ class ShellChecks {
       case case_data::LoadKind::Remote:
       case case_data::LoadKind::Traction:
         if (on_rim) {
-          refuse("a moment or a traction on a rim", "give it a force");
+          refuse("a moment or a traction on a rim",
+                 "give it a force or a rim_tension");
         }
         break;
       case case_data::LoadKind::Pressure:
         if (on_rim || load.place.of_place) {
           refuse(on_rim ? "a pressure on a rim" : "a pressure of place",
                  "give a film one number, or a traction of place");
+        }
+        break;
+      case case_data::LoadKind::RimTension:
+        if (!std::all_of(load.surfaces.begin(), load.surfaces.end(), is_rim)) {
+          refuse("a rim_tension on what is no rim", "name FILM/rim:CURVE");
         }
         break;
       case case_data::LoadKind::Temperature:

@@ -181,6 +181,7 @@ std::shared_ptr<ShellPart> ShellModel::part(
   }
   shell::check_shell(part->mesh, part->sections);
   part->skin = skin_of(surface, part->mesh);
+  part->frozen = reference_;
   part->rims = rims_;
   return part;
 }
@@ -209,6 +210,23 @@ std::vector<VectorX> ShellModel::to_numbers(
   return sums;
 }
 
+namespace {
+
+/// Of those that are corners. By their frozen places, so that a design does not
+/// choose another.
+int nearest(const Points& corners, const std::set<int>& nodes, const Vec3& at) {
+  int best = *nodes.begin();
+  for (const int node : nodes) {
+    if (node < std::ssize(corners) &&
+        (corners[node] - at).norm() < (corners[best] - at).norm()) {
+      best = node;
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
 std::vector<shell::NodeSupport> node_supports(
     const ShellPart& part, const loads::LoadCase& load_case) {
   std::vector<shell::NodeSupport> supports;
@@ -225,6 +243,9 @@ std::vector<shell::NodeSupport> node_supports(
           nodes.insert(part.skin.face(f).begin(), part.skin.face(f).end());
         }
       }
+    }
+    if (support.at) {
+      nodes = {nearest(part.frozen, nodes, *support.at)};
     }
     const auto& turn = support.fix_rotation;
     for (const int node : nodes) {

@@ -1,6 +1,7 @@
 #include "pipeline/shells/shell_part.h"
 
 #include <algorithm>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -46,6 +47,23 @@ void add_rim_force(const ShellPart& part, const RimForce& force,
   }
 }
 
+/// On the facets of the rim's own film.
+void add_rim_tension(const ShellPart& part, const loads::RimTension& load,
+                     shell::ShellLoads& sum) {
+  std::set<int> middles;
+  for (const std::array<int, 3>& edge : rim_of(part, load.rim)) {
+    middles.insert(edge[2]);
+  }
+  const int label = part.skin.label_of(film_of(load.rim));
+  for (int f = 0; f < part.skin.face_count(); ++f) {
+    for (int edge = 0; edge < 3 && part.skin.face_label[f] == label; ++edge) {
+      if (middles.contains(part.mesh.facets[f][3 + edge])) {
+        sum.pulls.push_back({f, edge, load.tension});
+      }
+    }
+  }
+}
+
 /// Of what acts on films as it would on a solid's faces.
 loads::LoadCase on_films(const loads::LoadCase& load_case) {
   loads::LoadCase result{.name = load_case.name};
@@ -79,6 +97,9 @@ ShellActions without_nodal(const ShellPart& part,
       result.rims.push_back({force.surfaces.front(), force.total});
       add_rim_force(part, result.rims.back(), result.loads);
     }
+  }
+  for (const loads::RimTension& tension : load_case.rim_tensions) {
+    add_rim_tension(part, tension, result.loads);
   }
   return result;
 }

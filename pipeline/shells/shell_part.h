@@ -43,8 +43,9 @@ struct ShellPart {
   ~ShellPart() = default;
 
   shell::ShellMesh mesh;
-  TetMesh skin;  // no elements: its nodes, and its facets as faces with the
-                 // films' names
+  TetMesh skin;   // no elements: its nodes, and its facets as faces with the
+                  // films' names
+  Points frozen;  // places of the corners, its first nodes, at the freeze
   std::vector<shell::Section> sections;     // one per shell of the case
   std::map<std::string, shell::Line> rims;  // "FILM/rim:CURVE"
   std::vector<ShellCase> cases;             // per load case

@@ -90,6 +90,9 @@ void add_supports(const case_data::Case& input,
     if (std::ranges::find(cut, support.surface) != cut.end()) {
       continue;  // within the whole
     }
+    if (support.at) {
+      continue;  // too small to draw: told in words
+    }
     job.supports.push_back(support.surface);
     job.support_labels.push_back(support_label(support));
   }
@@ -144,20 +147,27 @@ void add_forces(const loads::LoadCase& load_case, const UnitSystem& units,
   }
 }
 
-/// What acts on the whole part: gravity as an arrow, the rest in words.
+/// What acts on the whole part, or has no surface to draw it on: gravity as an
+/// arrow, the rest in words.
 void add_body_loads(const loads::LoadCase& load_case,
                     picture::PictureJob& job) {
   if (load_case.gravity.norm() > 0.0) {
     job.loads.push_back(
         {{}, load_case.gravity, "gravity", picture::PictureLoadKind::Body});
   }
+  const bool at_points =
+      std::any_of(load_case.supports.begin(), load_case.supports.end(),
+                  [](const loads::Support& s) { return s.at.has_value(); });
   const bool varied = std::any_of(
       load_case.tractions.begin(), load_case.tractions.end(),
       [](const loads::SurfaceTraction& t) { return bool(t.field); });
   for (const auto& [acts, what] :
-       {std::pair(load_case.spin.has_value(), ", it spins"),
+       {std::pair(at_points, ", held at points"),
+        std::pair(load_case.spin.has_value(), ", it spins"),
         std::pair(load_case.temperature.has_value(), ", it is heated"),
-        std::pair(varied, ", a traction that varies")}) {
+        std::pair(varied, ", a traction that varies"),
+        std::pair(!load_case.rim_tensions.empty(),
+                  ", rims pulled or pressed")}) {
     job.load_case += acts ? what : "";
   }
 }

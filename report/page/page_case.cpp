@@ -199,7 +199,9 @@ Json page_loads(const case_data::Case& input,
       add(traction.surface, "traction", Json());
     }
     for (const loads::Support& support : load_case.supports) {
-      add(support.surface, "support", Json());
+      if (!support.at) {
+        add(support.surface, "support", Json());
+      }
     }
     for (const loads::RigidPin& pin : load_case.pins) {
       for (const std::string& on : pin.surfaces) {

@@ -50,7 +50,7 @@ class Case(ProgramTest):
     def check_deck(self, part):
         """What `export --format inp` writes is solved to the run's figures."""
         result = json.loads((part / "result.json").read_text())
-        if not result.get("stress"):
+        if not result.get("stress") or "shell" in result:  # has no deck
             return
         self.expect(self.call("export", part, "--format", "inp", "--out",
                               "own.inp"), 0)

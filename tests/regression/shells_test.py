@@ -81,6 +81,7 @@ loads = [{ on = "skin/inside", pressure = "inside" }]
 supports = [{ on = "skin/rim:low", fix = "xyz", fix_rotation = "xyz" }]
 loads = [
   { on = "skin/rim:high", force = [1000, 0, "ring * 10"] },
+  { on = "skin/rim:high", rim_tension = "20 * inside" },
   { on = "skin", force = ["100 * inside", 0, 0] },
   { on = "skin", traction = [0, 0.01, "0.001 * x"] },
   { on = "skin/outside", pressure = 0.1 },
@@ -191,22 +192,34 @@ density = 7.85e-9
 supports = [{{ on = "skin/rim:low", fix = "xyz", fix_rotation = "{turn}" }}]
 loads = [
   {{ on = "skin/rim:high", force = ["pull", {force:.3f}, 30] }},
+  {{ on = "skin/rim:high", rim_tension = "{tension:.3f} + 0.1 * pull" }},
   {{ on = "skin/{face}", pressure = {pressure:.4f} }},
   {{ on = "skin", force = [0, "2 * pull", 1], moment = [0, 100, "pull"], at = ["lean", 0, 20] }},
   {{ gravity = [0, -9810, 0] }},
 ]
 
+[load_cases.afloat]
+supports = [{{ on = "skin", at = [0, {ring:.3f}, 0], fix = "xyz", fix_rotation = "xyz" }}]
+loads = [{{ on = ["skin/rim:low", "skin/rim:high"], rim_tension = "pull" }}]
+
 [responses.work]
 kind = "compliance"
+load_case = "one"
+
+[responses.grown]
+kind = "compliance"
+load_case = "afloat"
 
 [responses.tip]
 kind = "mean_displacement"
 on = "skin/rim:high"
 direction = [1, 1, 1]
+load_case = "one"
 
 [responses.stress]
 kind = "von_mises_norm"
 power = {power:.0f}
+load_case = "one"
 
 [responses.mass]
 kind = "mass"
@@ -227,8 +240,34 @@ def drawn(seed):
         side=roll.choice(["both", "inside", "outside"]),
         edge=roll.uniform(10, 16), ratio=roll.uniform(0, 0.45),
         turn=roll.choice(["xyz", "z", "xy"]), force=roll.uniform(-40, 40),
+        tension=roll.uniform(-10, 10),
         face=roll.choice(["inside", "outside"]),
         pressure=roll.uniform(-0.2, 0.2), power=roll.choice([4, 8, 16]))
+
+# The strip of two films that share a side, and of two shells.
+def in_halves(strip):
+    return strip.replace(
+        "[[0, 0, 0], [100, 0, 0], [100, 20, 0], [0, 20, 0]]",
+        "[[0, 0, 0], [50, 0, 0], [50, 20, 0], [0, 20, 0]]").replace(
+        "[curves.root]", """[curves.other]
+kind = "polygon"
+points = [[50, 0, 0], [100, 0, 0], [100, 20, 0], [50, 20, 0]]
+
+[curves.seam]
+kind = "polygon"
+points = [[50, 0, 0], [50, 20, 0], [50, 20, -9], [50, 0, -9]]
+
+[curves.root]""").replace("[shells.strip]", """[films.rest]
+kind = "disk"
+curves = ["other"]
+
+[shells.rest]
+films = ["rest"]
+thickness = "wall"
+material = "model"
+
+[shells.strip]""").replace("plate/rim:end", "rest/rim:end")
+
 
 # A strip across a rectangle; `root` holds nothing and names its foot.
 STRIP = """title = "A strip, clamped at one end"
@@ -334,30 +373,55 @@ class Shells(ProgramTest):
             self.assertLess(abs(result["responses"]["mass"] / (2e-6 * wall)
                                 - 1), 1e-9)
 
-    # The same strip of two films that share a side, and of two shells.
     def test_joins_films_that_share_a_side(self):
         whole, _, _ = self.run_case(STRIP, "--no-pictures")
-        halves = STRIP.replace(
-            "[[0, 0, 0], [100, 0, 0], [100, 20, 0], [0, 20, 0]]",
-            "[[0, 0, 0], [50, 0, 0], [50, 20, 0], [0, 20, 0]]").replace(
-            "[curves.root]", """[curves.other]
-kind = "polygon"
-points = [[50, 0, 0], [100, 0, 0], [100, 20, 0], [50, 20, 0]]
-
-[curves.root]""").replace("[shells.strip]", """[films.rest]
-kind = "disk"
-curves = ["other"]
-
-[shells.rest]
-films = ["rest"]
-thickness = "wall"
-material = "model"
-
-[shells.strip]""").replace("plate/rim:end", "rest/rim:end")
+        halves = in_halves(STRIP)
         parts, _, _ = self.run_case(halves, "--no-pictures", name="halves")
         for name in ("dip", "peak", "mass"):
             self.assertLess(abs(parts["responses"][name] /
                                 whole["responses"][name] - 1), 1e-6)
+
+    # A tension along the rim acts across it, out of its own film: at the
+    # shared side the one film's ends where the other's begins.
+    def test_is_pulled_at_its_rims(self):
+        strip = STRIP.replace("direction = [0, 0, 1]", "direction = [1, 0, 0]")
+        force = "force = [0, 0, 0.1]"
+        for text, rim, tension, reach in (
+                (strip, "plate/rim:end", 5, 100),
+                (strip, "plate/rim:end", -3, 100),
+                (in_halves(strip), "plate/rim:seam", 5, 50),
+                (in_halves(strip), "rest/rim:seam", 5, -50)):
+            end = "rest/rim:end" if "films.rest" in text else "plate/rim:end"
+            pulled = text.replace(
+                f'{{ on = "{end}", {force} }}',
+                f'{{ on = "{rim}", rim_tension = {tension} }}')
+            self.assertNotIn(force, pulled)
+            result, _, _ = self.run_case(pulled, "--no-pictures")
+            responses = result["responses"]
+            self.assertLess(abs(responses["dip"] / (tension * reach / 1000)
+                                - 1), 1e-6)
+            self.assertLess(abs(responses["peak"] / abs(tension) - 1), 1e-5)
+
+    # The same pull all around leaves a plate of any outline one stress.
+    def test_is_stressed_alike_by_the_same_pull_all_around(self):
+        roll = random.Random(2)
+        angles = [k + roll.uniform(0, 0.8) for k in range(6)]
+        points = [[round(roll.uniform(30, 60) * math.cos(a), 3),
+                   round(roll.uniform(30, 60) * math.sin(a), 3), 0]
+                  for a in angles]
+        text = STRIP.replace(
+            "[[0, 0, 0], [100, 0, 0], [100, 20, 0], [0, 20, 0]]",
+            str(points)).replace("poisson_ratio = 0\n",
+                                 "poisson_ratio = 0.3\n").replace(
+            'on = "plate/rim:root", fix', 'on = "plate", at = [5, 5, 0], fix')
+        text = text.replace('on = "plate/rim:end", force = [0, 0, 0.1]',
+                            'on = "plate/rim:outline", rim_tension = -7')
+        text = text.replace('on = "plate/rim:end"', 'on = "plate"').replace(
+            'kind = "max_von_mises"', 'kind = "von_mises_norm"\npower = 9')
+        result, _, _ = self.run_case(text, "--no-pictures")
+        self.assertLess(abs(result["responses"]["peak"] / 7 - 1), 1e-9)
+        self.assertLess(abs(result["stress"]["tip"]["max_von_mises"] / 7
+                            - 1), 1e-9)
 
     def test_has_exact_gradients(self):
         for side in ("both", "outside"):
@@ -418,6 +482,11 @@ constraints = [{ response = "dip", max = 10 }]
              "an enforced displacement"),
             ('force = [1000, 0, "ring * 10"]',
              'by = "rigid", force = [1000, 0, 0]', "a rigid or bearing load"),
+            ('"skin/rim:high", rim_tension = "20 * inside"',
+             '"skin", rim_tension = "20 * inside"',
+             "a rim_tension on what is no rim"),
+            ('fix = "xyz" }', 'at = ["ring", 0, 0], fix = "xyz" }',
+             "a support at a point that follows the design"),
             ("{ gravity = [0, 0, -9810] }", "{ temperature = 20 }",
              "a temperature"),
             ("pressure = 0.1", 'pressure = "0.1 + z"', "a pressure of place"),

@@ -28,6 +28,7 @@ COARSE = {
     "bell_crank": (16, 16),
     "spine_crank": (9, 9),
     "fuselage": (200, 200), "minimal_cell": (1.5, 1.5),
+    "pressure_vessel": (16, 8), "strut_tubes": (10, 5),
     "torque_tube": (10, 10), "tapered_cantilever": (24, 6),
 }
 # The mistakes that a case has no room for, and why.
@@ -52,6 +53,10 @@ NO_ROOM = {
     "torque_tube": {"crossing": "two rings face each other at any length",
                     "member": "no family"},
     "tapered_cantilever": {"thick": "no walls", "member": "no family"},
+    "pressure_vessel": {"crossing": "shells may cross: nothing is filled",
+                        "thick": "no walls", "member": "no family"},
+    "strut_tubes": {"crossing": "shells may cross: nothing is filled",
+                    "thick": "no walls"},
 }
 KINDS = ("swapped", "open", "crossing", "thick", "member")
 
@@ -305,6 +310,43 @@ WRONG = {
               (r"'small_side'.*crosses or overlaps another with facet \d+ "
                r"\('big_end'\) at \(.*\): " + MEET,),
               command="run case.toml --set study.kind=analyse --set low=20"),
+    ],
+    "pressure_vessel": [
+        Harmless("a film's two curves",
+                 {'["seat", "neck"]\n\n[films.bottom]':
+                  '["neck", "seat"]\n\n[films.bottom]'}),
+        Wrong("swapped", "one end of a film",
+              {'["neck", "top"]': '["seat", "top"]'}, 2,
+              not_closed("pipe", "neck", "let film 'nozzle' end at 'neck', not "
+                                         "at 'seat'"),
+              'enclosed_by = ["nozzle"'),
+        Wrong("open", "the gas without a lid",
+              {'"bottom", "neck_lid"]': '"bottom"]'}, 2,
+              not_closed("gas", "neck", "add 'neck_lid'"),
+              'enclosed_by = ["wall"'),
+    ],
+    "strut_tubes": [
+        Harmless("both films' curves",
+                 {'curves = ["foot", "eye"]\n\n[films':
+                  'curves = ["eye", "foot"]\n\n[films',
+                  '["eye", "end"]': '["end", "eye"]'}),
+        Wrong("swapped", "the rims of a thickness",
+              {'curves = ["foot", "eye"]\ncounts':
+               'curves = ["foot", "end"]\ncounts'}, 2,
+              (r"case\.toml:{line}: shells\.tube\.thickness has a shape "
+               r"between curves 'foot' and 'end'; no film of .*tube ends at "
+               r"'end' \(they end at eye, foot\)",), 'thickness = "thickness"',
+              "run case.toml --set study.kind=analyse"),
+        Wrong("open", "the end without its lid",
+              {'"joint", "eye_pad"]': '"joint"]'}, 2,
+              not_closed("boss", "end", "add 'eye_pad'"),
+              'enclosed_by = ["boss_side"'),
+        Wrong("member", "a length below 0", {'"members.csv"': '"m.csv"'}, 2,
+              (r"m\.csv:3: member 'b': .*case\.toml:{line}: "
+               r"bodies\.part\.volume is -67971\.8 where .*length = -60; it "
+               r"must be above 0",),
+              'volume = "fill * length', "run case.toml",
+              {"m.csv": MEMBERS + "a,70,8,10,2000\nb,-60,0,0,2000\n"}),
     ],
     "torque_tube": [
         Harmless("the film's curves",

@@ -35,6 +35,13 @@ class WrongCase(ProgramTest):
         path = self.write_case((r"^radius = 35", "radius = [35]"))
         self.refuse(path, self.line_of(path, r"radius = \[35\]"), "radius")
 
+    def test_list_where_a_name_is_asked(self):
+        path = self.write_case((r"^\[study\]", "[responses.most]\n"
+                                "kind = \"envelope\"\n"
+                                "of = [\"left_deflection\"]\n\n[study]"))
+        self.refuse(path, self.line_of(path, r"of = \[\"left"), "most.of",
+                    "text")
+
     def test_unknown_name_in_expression(self):
         path = self.write_case((r'"support_x"', '"suport_x"'))
         self.refuse(path, self.line_of(path, '"suport_x"'), "suport_x",
