@@ -262,12 +262,6 @@ class ShellChecks {
     if (!analysis.exclude.empty()) {
       refuse("exclude");
     }
-    if (analysis.frequencies > 0) {
-      refuse("frequencies");
-    }
-    if (analysis.buckling.value_or(0) > 0) {
-      refuse("buckling");
-    }
     if (analysis.solver != equations::SolverKind::Automatic &&
         analysis.solver != equations::SolverKind::Cholesky) {
       refuse("solver");

@@ -287,6 +287,32 @@ buckling = 0
 """
 
 
+# The tube as thick as a tenth of its radius, under what presses it; `root`
+# clamps: of walls by their thickness.
+THICK = TUBE[:TUBE.index("[load_cases.inner]")].replace(
+    "initial = 1\nbounds = [0.2, 5]", "initial = 5\nbounds = [0.2, 15]") + """
+[load_cases.{name}]
+supports = [{supports}]
+loads = [{load}]
+
+[responses.mass]
+kind = "mass"
+
+[analysis]
+buckling = 2
+frequencies = 4
+"""
+CLAMPED = '{{ on = "skin/rim:{}", fix = "xyz", fix_rotation = "xyz" }}'
+PRESSED = {
+    "along": (CLAMPED.format("low") + ', { on = "skin/rim:high", fix = "xy" }',
+              '{ on = "skin/rim:high", force = [0, 0, -1e6] }'),
+    "around": (CLAMPED.format("low") + ", " + CLAMPED.format("high"),
+               '{ on = "skin/outside", pressure = 50 }'),
+    "bent": (CLAMPED.format("low"),
+             '{ on = "skin/rim:high", force = [1e5, 0, 0] }'),
+}
+
+
 class Shells(ProgramTest):
     def case(self, text=TUBE, name="case.toml"):
         return super().case(text, name)
@@ -376,6 +402,97 @@ material = "model"
                             'thickness = "wall * (1 + z^2 / 5000)"')
         self.expect(self.call("check-gradient", self.case(text)), 0)
 
+    # A clamped strip, and one that nothing holds: Euler and Bernoulli, turning
+    # inertia and shear being nothing at t / L = 1/100.
+    def test_vibrates_as_beams_do(self):
+        wave = math.sqrt(1000 / 12 / 1e-9)  # [mm^2/s] for t = 1
+        for held, roots, skipped in (
+                ("tip", [1.87510, 4.69409, 7.85476], 0),
+                ("free", [4.73004, 7.85320], 6)):
+            result, said, out = self.run_case(STRIP.replace(
+                "buckling = 0", f'frequencies = 6\nsupports_of = "{held}"'),
+                name=held)
+            found = result["natural_frequencies"]
+            self.assertEqual(found["rigid_motions"], skipped)
+            for root in roots:
+                ideal = root ** 2 / (2 * math.pi * 100 ** 2) * wave
+                # Between them it turns about its axis.
+                self.assertLess(min(abs(f / ideal - 1)
+                                    for f in found["values"]), 3e-3)
+            self.assertIn("natural frequencies", said)
+            for name in ("part.vtu", "part_surface.vtp"):
+                self.assertIn(b'Name="mode_6"', (out / name).read_bytes())
+            self.assertIn("frequencies", (out / "report.html").read_text())
+
+    # NAFEMS FV12 at a hundredth of its length and thickness.
+    def test_vibrates_as_nafems_says(self):
+        plate = STRIP.replace(
+            "[[0, 0, 0], [100, 0, 0], [100, 20, 0], [0, 20, 0]]",
+            "[[0, 0, 0], [100, 0, 0], [100, 100, 0], [0, 100, 0]]").replace(
+            "[[0, 0, 0], [0, 20, 0], [0, 20, -9], [0, 0, -9]]",
+            "[[0, 0, 0], [0, 100, 0], [0, 100, -9], [0, 0, -9]]").replace(
+            "[[100, 0, 0], [100, 20, 0], [100, 20, -9], [100, 0, -9]]",
+            "[[100, 0, 0], [100, 100, 0], [100, 100, -9], [100, 0, -9]]"
+            ).replace("= 1000\n", "= 200e3\n").replace(
+            "poisson_ratio = 0", "poisson_ratio = 0.3").replace(
+            '"1000 kg/m3"', '"8000 kg/m3"').replace(
+            "buckling = 0",
+            'buckling = 0\nfrequencies = 7\nsupports_of = "free"').replace(
+            "fea = 7", "fea = 14")
+        result, _, _ = self.run_case(plate, "--no-pictures", "--set",
+                                     "design.wall.initial=0.5")
+        target = [1.622, 2.360, 2.922, 4.191, 4.191, 7.416, 7.416]
+        for found, ideal in zip(result["natural_frequencies"]["values"],
+                                target, strict=True):
+            # The last two are upper bounds by few functions.
+            self.assertLess(abs(found / (100 * ideal) - 1),
+                            2e-3 if ideal < 5 else 1.2e-2)
+
+    # Euler's column, clamped at one end, and a plate of five squares hinged
+    # along all sides: four times pi^2 D / b^2.
+    def test_buckles_as_columns_and_plates_do(self):
+        stiffness = 1000 * 0.25 ** 3 / 12  # of width, t = 1/4
+        column = STRIP.replace("force = [0, 0, 0.1]", "force = [-0.1, 0, 0]")
+        plate = column.replace('fix_rotation = "xyz" }', '}, '
+                               '{ on = "plate/rim:outline", fix = "z" }'
+                               ).replace('"xyz", }', '"xyz" }')
+        for text, force in (
+                (column, math.pi ** 2 * 20 * stiffness / 4 / 100 ** 2),
+                (plate, 4 * math.pi ** 2 * stiffness / 20)):
+            result, said, out = self.run_case(
+                text.replace("buckling = 0", "buckling = 2").replace(
+                    "fea = 7", "fea = 4"),
+                "--no-pictures", "--set", "design.wall.initial=0.25",
+                name=f"out_{force:.3f}")
+            found = result["buckling"]["tip"]
+            self.assertLess(abs(0.1 * found["factors"][0] / force - 1), 4e-3)
+            self.assertAlmostEqual(found["stress"][0]["von_mises"], 0.02, 4)
+            self.assertIn(b'Name="buckling_tip_2"',
+                          (out / "part.vtu").read_bytes())
+
+    # Walls of the same film, of tetrahedra.
+    def test_vibrates_and_buckles_as_walls_do(self):
+        for name, (supports, load) in PRESSED.items():
+            with self.subTest(name=name):
+                text = THICK.format(name=name, supports=supports, load=load)
+                walls = text.replace("[shells.tube]", "[walls.tube]").replace(
+                    ', fix_rotation = "xyz"', "")
+                one, _, _ = self.run_case(text, "--no-pictures", name=name)
+                two, _, _ = self.run_case(walls, "--no-pictures",
+                                          name=f"{name}_walls")
+                for a, b, most in (
+                        (one["buckling"][name]["factors"],
+                         two["buckling"][name]["factors"], 0.03),
+                        (one["natural_frequencies"]["values"],
+                         two["natural_frequencies"]["values"], 0.015)):
+                    self.assertEqual(len(a), len(b))
+                    for x, y in zip(a, b):
+                        self.assertLess(abs(x / y - 1), most)
+                self.assertLess(
+                    abs(one["buckling"][name]["stress"][0]["von_mises"] /
+                        two["buckling"][name]["stress"][0]["von_mises"] - 1),
+                    0.06)
+
     def test_is_sized(self):
         study = """
 [study]
@@ -427,7 +544,7 @@ constraints = [{ response = "dip", max = 10 }]
             ('power = 8\nload_case = "many"', 'power = 8\nload_case = "inner"',
              "whose pressure follows the design"),
             ("fea = 8", "fea = 8\nfilm = 8", "resolution.film is as long"),
-            ("buckling = 0", "buckling = 1", "analysis.buckling is of solids"),
+            ("buckling = 0", "adapt = true", "analysis.adapt is of solids"),
             ('youngs_modulus = "210 GPa"', 'youngs_modulus = "1e5 * fill"',
              "'steel' follows the design"),
             ('material = "void"', 'material = "steel"',
