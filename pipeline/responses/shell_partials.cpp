@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "fea/shell/shell_mode_works.h"
 #include "fea/shell/shell_norm.h"
 #include "pipeline/responses/response_partials.h"
 #include "pipeline/shells/shell_part.h"
@@ -41,13 +42,8 @@ ResponsePartials shell_energy(const ResponseTask& task) {
 
 /// The mass of a density of 1.
 ResponsePartials shell_volume(const shells::ShellPart& part) {
-  std::vector<shell::Section> sections = part.sections;
-  for (shell::Section& section : sections) {
-    for (shell::Ply& ply : section.laminate.plies) {
-      ply.material.density = 1.0;
-    }
-  }
-  return shell_to_partials(shell::shell_mass(part.mesh, sections));
+  return shell_to_partials(
+      shell::shell_mass(part.mesh, shells::with_density(part.sections, 1.0)));
 }
 
 ResponsePartials mean_on_rim(const ResponseTask& task) {
@@ -105,6 +101,34 @@ ResponsePartials shell_stress_norm(const ResponseTask& task) {
   return result;
 }
 
+/// A sum over modes that were found with the design.
+ResponsePartials shell_modal(const ResponseTask& task) {
+  const ModalSum& sum = modal_sum(*task.fields.modes, task.response.name);
+  const shells::ShellPart& part = *task.fields.shell;
+  ResponsePartials result;
+  if (task.derivatives == element::Derivatives::All) {
+    const FoundModes& found = task.fields.modes->problems[sum.problem];
+    const modes::WeightedModes modes{found.values, found.shapes, sum.weights};
+    if (found.kind == case_data::ResponseKind::BucklingFactor) {
+      const shells::ShellCase& own =
+          part.cases[static_cast<std::size_t>(found.load_case)];
+      shell::ModeWork work = shell::factor_functional(
+          part.mesh, part.sections, own.actions.loads, own.displacement, modes);
+      VectorX by_displacement = std::move(work.by_displacement);
+      result = shell_to_partials(std::move(work));
+      result.cases.push_back({.load_case = found.load_case,
+                              .by_displacement = std::move(by_displacement),
+                              .by_forces = {},
+                              .by_temperature = {}});
+    } else {
+      result = shell_to_partials(
+          shell::frequency_functional(part.mesh, part.sections, modes));
+    }
+  }
+  result.value = sum.value;
+  return result;
+}
+
 }  // namespace
 
 std::optional<ResponsePartials> shell_partials(const ResponseTask& task) {
@@ -114,6 +138,9 @@ std::optional<ResponsePartials> shell_partials(const ResponseTask& task) {
     case Kind::Compliance:
     case Kind::StrainEnergy:
       return shell_energy(task);
+    case Kind::BucklingFactor:
+    case Kind::Frequency:
+      return shell_modal(task);
     case Kind::Mass:
       return shell_to_partials(shell::shell_mass(part.mesh, part.sections));
     case Kind::Volume:

@@ -16,10 +16,10 @@ namespace {
 const std::vector<case_data::ResponseKind>& kinds_of_shells() {
   using K = case_data::ResponseKind;
   static const std::vector<case_data::ResponseKind> kinds = {
-      K::MeanDisplacement, K::DisplacementNorm, K::Rotation,
-      K::Compliance,       K::StrainEnergy,     K::Mass,
-      K::Volume,           K::MaxVonMises,      K::VonMisesNorm,
-      K::Envelope,         K::Expression};
+      K::MeanDisplacement, K::DisplacementNorm, K::Rotation,     K::Compliance,
+      K::StrainEnergy,     K::BucklingFactor,   K::Frequency,    K::Mass,
+      K::Volume,           K::MaxVonMises,      K::VonMisesNorm, K::Envelope,
+      K::Expression};
   return kinds;
 }
 
@@ -221,13 +221,14 @@ class ShellChecks {
                     fmt::format("responses.{} is on a rim, where shells have "
                                 "mean_displacement without weight; name a film",
                                 response.name));
-    } else if (response.kind == case_data::ResponseKind::VonMisesNorm) {
-      check_norm(response);
+    } else if (response.kind == case_data::ResponseKind::VonMisesNorm ||
+               response.kind == case_data::ResponseKind::BucklingFactor) {
+      check_stress_by_loads(response);
     }
   }
 
   /// Pressures and weight stress a wall beside what they move it by.
-  void check_norm(const case_data::ResponseEntry& response) {
+  void check_stress_by_loads(const case_data::ResponseEntry& response) {
     std::vector<std::string> found;
     const case_data::CaseValues values(
         input_, case_data::initial_design(input_), found);
@@ -241,10 +242,11 @@ class ShellChecks {
         problems_.add(
             response.line,
             fmt::format("responses.{} is of load case '{}', whose {} follows "
-                        "the design, which norms of shells cannot yet; give it "
+                        "the design, which {} of shells cannot yet; give it "
                         "a fixed number",
                         response.name, load_case.name,
-                        pressed ? "pressure" : "gravity"));
+                        pressed ? "pressure" : "gravity",
+                        case_data::row_of(response.kind).name));
       }
     }
   }

@@ -92,6 +92,10 @@ std::vector<double> nodal_von_mises(
     const ShellPart& part, std::size_t load_case,
     const std::vector<element::Stress shell::WallStress::*>& heights);
 
+/// Of all their plies.
+std::vector<shell::Section> with_density(std::vector<shell::Section> sections,
+                                         double density);
+
 /// Displacements and rotations of 6 numbers per node, 3 each; and back, without
 /// rotations.
 VectorX displacements_of(const VectorX& six);

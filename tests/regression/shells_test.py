@@ -313,6 +313,49 @@ PRESSED = {
 }
 
 
+# What eigenvalues say of shells, of a load case.
+MODAL = """
+[responses.stable]
+kind = "buckling_factor"
+load_case = "{0}"
+
+[responses.third]
+kind = "buckling_factor"
+number = 3
+load_case = "{0}"
+
+[responses.hum]
+kind = "frequency"
+
+[responses.flight]
+kind = "frequency"
+load_case = "free"
+"""
+
+
+def tapered_load(taper):
+    """Of a strip of t = 1 + taper x / 100, clamped at x = 0 and pressed at its
+    other end: E I y'' = -P y, y from the end's line, so that y' is first 0 at
+    the clamp."""
+    def turns(load):
+        steps = 400
+        y, slope, h = 0.0, 1.0, 100 / steps
+        for k in range(steps):
+            middle = 100 - (k + 0.5) * h
+            bend = load / (1000 * 20 / 12 * (1 + taper * middle / 100) ** 3)
+            y += 0.5 * h * slope
+            slope -= h * bend * y
+            y += 0.5 * h * slope
+            if slope < 0:
+                return True
+        return False
+    low, high = 0.0, 5.0
+    for _ in range(60):
+        low, high = ((low, (low + high) / 2) if turns((low + high) / 2)
+                     else ((low + high) / 2, high))
+    return low
+
+
 class Shells(ProgramTest):
     def case(self, text=TUBE, name="case.toml"):
         return super().case(text, name)
@@ -396,6 +439,15 @@ material = "model"
             with self.subTest(seed=seed):
                 self.expect(self.call("check-gradient",
                                       self.case(drawn(seed))), 0)
+
+    # Least factors and frequencies, and a third that is followed by its shape.
+    def test_has_exact_gradients_of_eigenvalues(self):
+        self.expect(self.call("check-gradient", self.case(
+            TUBE + MODAL.format("many"))), 0)
+        for seed in range(3):
+            with self.subTest(seed=seed):
+                self.expect(self.call("check-gradient", self.case(
+                    drawn(seed) + MODAL.format("one"))), 0)
 
     def test_takes_its_thickness_along(self):
         text = TUBE.replace('thickness = "wall"',
@@ -505,6 +557,38 @@ constraints = [{ response = "dip", max = 10 }]
         ideal = (0.1 * 100 ** 3 * 12 / (3 * 1000 * 20 * 10)) ** (1 / 3)
         self.assertLess(abs(result["parameters"]["wall"] / ideal - 1), 2e-3)
 
+    # The lightest strip that stands, of all whose thickness is linear.
+    def test_is_shaped_against_buckling(self):
+        text = STRIP.replace("force = [0, 0, 0.1]", "force = [-0.5, 0, 0]"
+                             ).replace('thickness = "wall"', 'thickness = '
+                                       '"wall * (1 + taper * x / 100)"'
+                                       ).replace("[curves.outline]", """
+[design.taper]
+initial = 0
+bounds = [-0.9, 0.5]
+
+[curves.outline]""") + """
+[responses.stable]
+kind = "buckling_factor"
+
+[study]
+kind = "minimize"
+objective = "mass"
+constraints = [{ response = "stable", min = 1.5 }]
+"""
+        result, _, _ = self.run_case(text, "--no-pictures")
+        self.assertEqual(result["status"], "converged")
+        self.assertLess(abs(result["responses"]["stable"] / 1.5 - 1), 2e-3)
+
+        def mass(taper):
+            wall = (1.5 * 0.5 / tapered_load(taper)) ** (1 / 3)
+            return 2e-6 * wall * (1 + taper / 2)
+
+        taper = result["parameters"]["taper"]
+        self.assertLess(abs(result["responses"]["mass"] / mass(taper) - 1),
+                        2e-3)
+        self.assertLess(mass(taper), min(mass(taper - 0.1), mass(taper + 0.1)))
+
     def test_has_the_same_bits_for_any_number_of_threads(self):
         figures = []
         for threads in ("1", "3"):
@@ -539,8 +623,10 @@ constraints = [{ response = "dip", max = 10 }]
              "a temperature"),
             ("pressure = 0.1", 'pressure = "0.1 + z"', "a pressure of place"),
             ("spin = 100", 'spin = "inside"', "a spin that follows the design"),
-            ('kind = "mass"', 'kind = "frequency"',
-             "responses.mass is of kind frequency, which shells do not have"),
+            ('kind = "mass"', 'kind = "inertia"\naxis = [0, 0, 1]',
+             "responses.mass is of kind inertia, which shells do not have"),
+            ('kind = "mass"', 'kind = "buckling_factor"\nload_case = "inner"',
+             "whose pressure follows the design"),
             ('power = 8\nload_case = "many"', 'power = 8\nload_case = "inner"',
              "whose pressure follows the design"),
             ("fea = 8", "fea = 8\nfilm = 8", "resolution.film is as long"),
