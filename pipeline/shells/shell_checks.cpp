@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "pipeline/case_data/case_symmetry.h"
 #include "pipeline/case_data/case_values.h"
 #include "pipeline/case_data/response_kinds.h"
 #include "pipeline/shells/shell_part.h"
@@ -129,7 +130,10 @@ class ShellChecks {
                                       load_case.name, what));
     };
     for (const case_data::SupportEntry& support : load_case.supports) {
-      if (support.support.kind != loads::SupportKind::Components) {
+      const std::vector<std::string> ends = case_data::cut_faces(input_);
+      const bool is_end =
+          std::count(ends.begin(), ends.end(), support.support.surface) > 0;
+      if (support.support.kind != loads::SupportKind::Components && !is_end) {
         refuse(support.line, "a support along normals");
       } else if (support.displacement) {
         refuse(support.line, "an enforced displacement");

@@ -74,6 +74,25 @@ std::map<std::string, Line> rims_of(const walls::WallFilms& films,
   return rims;
 }
 
+/// The films' edges in a plane on which they slide.
+void add_ends(const walls::WallFilms& films, const SurfaceNodes& nodes,
+              std::size_t plane, std::map<std::string, Line>& rims) {
+  std::set<int> vertices;
+  for (std::size_t v = 0; v < films.planes.at.size(); ++v) {
+    const std::vector<int>& own = films.planes.at[v];
+    if (std::count(own.begin(), own.end(), static_cast<int>(plane)) > 0) {
+      vertices.insert(static_cast<int>(v));
+    }
+  }
+  for (std::size_t label = 0; label < films.mesh.labels.size(); ++label) {
+    Line line = edges_on(nodes, static_cast<int>(label), vertices);
+    if (!line.empty()) {
+      rims[films.mesh.labels[label] + "/" + films.planes.planes[plane].rim] =
+          std::move(line);
+    }
+  }
+}
+
 double offset_of(walls::WallSide side) {
   switch (side) {
     case walls::WallSide::Both:
@@ -122,6 +141,14 @@ ShellModel::ShellModel(const case_data::Case& input,
                                 entry.name));
   }
   rims_ = rims_of(films, nodes_);
+  for (std::size_t p = 0; p < films.planes.planes.size(); ++p) {
+    std::map<std::string, Line> ends;
+    add_ends(films, nodes_, p, ends);
+    for (auto& [name, line] : ends) {
+      planes_[name] = films.planes.planes[p].normal;
+      rims_[name] = std::move(line);
+    }
+  }
 }
 
 double ShellModel::thickness_at(std::size_t shell, Numbers numbers,
@@ -165,6 +192,7 @@ std::shared_ptr<ShellPart> ShellModel::part(
   shell::check_shell(part->mesh, part->sections);
   part->skin = skin_of(surface, part->mesh);
   part->rims = rims_;
+  part->planes = planes_;
   return part;
 }
 
@@ -192,12 +220,33 @@ std::vector<VectorX> ShellModel::to_numbers(
   return sums;
 }
 
+namespace {
+
+/// An image in the plane moves and turns like the node: along the plane, about
+/// its normal. Planes across x, y or z have no axes of their own, so that rims
+/// may end in them.
+shell::NodeSupport in_plane(const Vec3& normal) {
+  shell::NodeSupport support;
+  Eigen::Index across = 0;
+  if (normal.cwiseAbs().maxCoeff(&across) < 1.0) {
+    across = 0;
+    support.axes = element::LocalAxes{normal, normal.unitOrthogonal()};
+  }
+  for (int k = 0; k < 3; ++k) {
+    support.held[k] = k == across;
+    support.held[3 + k] = k != across;
+  }
+  return support;
+}
+
+}  // namespace
+
 std::vector<shell::NodeSupport> node_supports(
     const ShellPart& part, const loads::LoadCase& load_case) {
   std::vector<shell::NodeSupport> supports;
   for (const loads::Support& support : load_case.supports) {
     std::set<int> nodes;
-    if (is_rim(support.surface)) {
+    if (part.rims.contains(support.surface) || is_rim(support.surface)) {
       for (const std::array<int, 3>& edge : rim_of(part, support.surface)) {
         nodes.insert(edge.begin(), edge.end());
       }
@@ -210,11 +259,16 @@ std::vector<shell::NodeSupport> node_supports(
       }
     }
     const auto& turn = support.fix_rotation;
+    shell::NodeSupport held = {
+        .held = {support.fix_x, support.fix_y, support.fix_z, turn[0], turn[1],
+                 turn[2]},
+        .axes = support.axes};
+    if (support.kind == loads::SupportKind::Symmetry) {
+      held = in_plane(part.planes.at(support.surface));
+    }
     for (const int node : nodes) {
-      supports.push_back({.node = node,
-                          .held = {support.fix_x, support.fix_y, support.fix_z,
-                                   turn[0], turn[1], turn[2]},
-                          .axes = support.axes});
+      held.node = node;
+      supports.push_back(held);
     }
   }
   return supports;

@@ -46,7 +46,9 @@ struct ShellPart {
   TetMesh skin;  // no elements: its nodes, and its facets as faces with the
                  // films' names
   std::vector<shell::Section> sections;     // one per shell of the case
-  std::map<std::string, shell::Line> rims;  // "FILM/rim:CURVE"
+  std::map<std::string, shell::Line> rims;  // "FILM/rim:CURVE", and those in
+                                            // planes: "FILM/symmetry_1"
+  std::map<std::string, Vec3> planes;       // of these: the unit normals
   std::vector<ShellCase> cases;             // per load case
 };
 

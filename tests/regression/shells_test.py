@@ -437,8 +437,8 @@ material = "model"
     def test_has_exact_gradients_of_films_drawn_at_random(self):
         for seed in range(4):
             with self.subTest(seed=seed):
-                self.expect(self.call("check-gradient",
-                                      self.case(drawn(seed))), 0)
+                self.expect(self.call("check-gradient", self.case(
+                    drawn(seed))), 0)
 
     # Least factors and frequencies, and a third that is followed by its shape.
     def test_has_exact_gradients_of_eigenvalues(self):
@@ -544,6 +544,50 @@ material = "model"
                     abs(one["buckling"][name]["stress"][0]["von_mises"] /
                         two["buckling"][name]["stress"][0]["von_mises"] - 1),
                     0.06)
+
+    # Half of the tube is the whole's, modes that are symmetric included; so is
+    # a quarter under what a quarter can have.
+    def test_is_half_or_a_quarter_of_the_whole(self):
+        load = ('{{ on = "skin/rim:high", force = [{:g}, 0, {:g}] }}, '
+                '{{ on = "skin/outside", pressure = 0.5 }}')
+        told = """
+[responses.sink]
+kind = "mean_displacement"
+on = "skin/rim:high"
+direction = [0, 0, 1]
+
+[responses.work]
+kind = "compliance"
+"""
+        for planes, across in ((1, 1000), (2, 0)):
+            with self.subTest(planes=planes):
+                parts = 2 ** planes
+                whole = THICK.format(name="all", load=load.format(across, -4000),
+                                     supports=CLAMPED.format("low")) + told
+                drawn = THICK.format(
+                    name="all", supports=CLAMPED.format("low"),
+                    load=load.format(across / parts, -4000 / parts)).replace(
+                    "ring^2 * 100", f"ring^2 * {100 / parts:g}").replace(
+                    "[shells.tube]", """[symmetry]
+planes = [{ at = [0, 0, 0], normal = [0, 1, 0] }%s]
+
+[shells.tube]""" % (", { at = [0, 0, 0], normal = [1, 0, 0] }"
+                    if planes == 2 else "")) + told
+                one, _, _ = self.run_case(whole, "--no-pictures",
+                                          name=f"whole_{planes}")
+                two, _, out = self.run_case(drawn, name=f"drawn_{planes}")
+                for name, value in one["responses"].items():
+                    self.assertLess(
+                        abs(two["responses"][name] / value - 1), 1e-3)
+                # The whole has each of them twice.
+                self.assertLess(
+                    abs(two["natural_frequencies"]["values"][0] /
+                        one["natural_frequencies"]["values"][0] - 1), 1e-3)
+                self.assertRegex(
+                    (out / "part.vtu").read_bytes(),
+                    rb'NumberOfCells="%d"' % (parts * two["shell"]["facets"]))
+                self.assertTrue((out / "part.png").exists())
+                self.expect(self.call("check-gradient", self.case(drawn)), 0)
 
     def test_is_sized(self):
         study = """
