@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "fea/shell/shell_mode_works.h"
+#include "fea/shell/shell_moments.h"
 #include "fea/shell/shell_norm.h"
 #include "pipeline/responses/response_partials.h"
 #include "pipeline/shells/shell_part.h"
@@ -44,6 +45,58 @@ ResponsePartials shell_energy(const ResponseTask& task) {
 ResponsePartials shell_volume(const shells::ShellPart& part) {
   return shell_to_partials(
       shell::shell_mass(part.mesh, shells::with_density(part.sections, 1.0)));
+}
+
+/// Along the direction, made unit: the first moment over the mass.
+ResponsePartials shell_centre(const ResponseTask& task) {
+  const shells::ShellPart& part = *task.fields.shell;
+  const double length = task.inputs.direction.norm();
+  const Vec3 unit = task.inputs.direction / length;
+  const shell::MassMoments moments =
+      shell::mass_moments(part.mesh, part.sections, Vec3::Zero());
+  if (!(moments.mass > 0.0)) {
+    throw InvalidInput(fmt::format(
+        "response '{}': the shell has no mass, and so no centre of it; give "
+        "its material a density",
+        task.response.name));
+  }
+  const Vec3 centre = moments.first / moments.mass;
+  ResponsePartials result;
+  if (task.derivatives == element::Derivatives::All) {
+    result = shell_to_partials(shell::mass_integral(
+        part.mesh, part.sections, {.linear = unit / moments.mass}, centre));
+    result.by_direction = (centre - unit.dot(centre) * unit) / length;
+  }
+  result.value = unit.dot(centre);
+  return result;
+}
+
+/// As functionals::inertia_functional() has it.
+ResponsePartials shell_inertia(const ResponseTask& task) {
+  const shells::ShellPart& part = *task.fields.shell;
+  const double length = task.inputs.direction.norm();
+  const Vec3 unit = task.inputs.direction / length;
+  const Mat3 across = Mat3::Identity() - unit * unit.transpose();
+  Vec3 from = task.inputs.point;
+  if (!task.response.point) {
+    const shell::MassMoments whole =
+        shell::mass_moments(part.mesh, part.sections, Vec3::Zero());
+    from = whole.first / whole.mass;
+  }
+  const shell::MassMoments moments =
+      shell::mass_moments(part.mesh, part.sections, from);
+  ResponsePartials result;
+  if (task.derivatives == element::Derivatives::All) {
+    // About the centre of mass its own motion does not count.
+    result = shell_to_partials(shell::mass_integral(part.mesh, part.sections,
+                                                    {.square = across}, from));
+    result.by_direction = -2.0 / length * across * moments.second * unit;
+    if (task.response.point) {
+      result.by_point = -2.0 * across * moments.first;
+    }
+  }
+  result.value = across.cwiseProduct(moments.second).sum();
+  return result;
 }
 
 ResponsePartials mean_on_rim(const ResponseTask& task) {
@@ -145,6 +198,10 @@ std::optional<ResponsePartials> shell_partials(const ResponseTask& task) {
       return shell_to_partials(shell::shell_mass(part.mesh, part.sections));
     case Kind::Volume:
       return shell_volume(part);
+    case Kind::CentreOfMass:
+      return shell_centre(task);
+    case Kind::Inertia:
+      return shell_inertia(task);
     case Kind::MaxVonMises:
       return shell_peak_stress(task);
     case Kind::VonMisesNorm:

@@ -17,10 +17,10 @@ namespace {
 const std::vector<case_data::ResponseKind>& kinds_of_shells() {
   using K = case_data::ResponseKind;
   static const std::vector<case_data::ResponseKind> kinds = {
-      K::MeanDisplacement, K::DisplacementNorm, K::Rotation,     K::Compliance,
-      K::StrainEnergy,     K::BucklingFactor,   K::Frequency,    K::Mass,
-      K::Volume,           K::MaxVonMises,      K::VonMisesNorm, K::Envelope,
-      K::Expression};
+      K::MeanDisplacement, K::DisplacementNorm, K::Rotation,  K::Compliance,
+      K::StrainEnergy,     K::BucklingFactor,   K::Frequency, K::Mass,
+      K::Volume,           K::CentreOfMass,     K::Inertia,   K::MaxVonMises,
+      K::VonMisesNorm,     K::Envelope,         K::Expression};
   return kinds;
 }
 

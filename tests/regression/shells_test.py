@@ -313,6 +313,22 @@ PRESSED = {
 }
 
 
+# Where mass is.
+MASSES = """
+[responses.middle]
+kind = "centre_of_mass"
+direction = [1, 2, "wall"]
+
+[responses.spin]
+kind = "inertia"
+axis = [1, "wall", 0.5]
+
+[responses.swing]
+kind = "inertia"
+axis = [0, 0, 1]
+through = ["wall", 5, 0]
+"""
+
 # What eigenvalues say of shells, of a load case.
 MODAL = """
 [responses.stable]
@@ -438,7 +454,7 @@ material = "model"
         for seed in range(4):
             with self.subTest(seed=seed):
                 self.expect(self.call("check-gradient", self.case(
-                    drawn(seed))), 0)
+                    drawn(seed) + MASSES)), 0)
 
     # Least factors and frequencies, and a third that is followed by its shape.
     def test_has_exact_gradients_of_eigenvalues(self):
@@ -667,8 +683,8 @@ constraints = [{ response = "stable", min = 1.5 }]
              "a temperature"),
             ("pressure = 0.1", 'pressure = "0.1 + z"', "a pressure of place"),
             ("spin = 100", 'spin = "inside"', "a spin that follows the design"),
-            ('kind = "mass"', 'kind = "inertia"\naxis = [0, 0, 1]',
-             "responses.mass is of kind inertia, which shells do not have"),
+            ('kind = "mass"', 'kind = "uniformity"',
+             "responses.mass is of kind uniformity, which shells do not have"),
             ('kind = "mass"', 'kind = "buckling_factor"\nload_case = "inner"',
              "whose pressure follows the design"),
             ('power = 8\nload_case = "many"', 'power = 8\nload_case = "inner"',
@@ -688,6 +704,33 @@ constraints = [{ response = "stable", min = 1.5 }]
                 TUBE.replace(old, new, 1))), 2)
             self.assertIn(said, done.stderr)
             self.assertRegex(done.stderr, r"case\.toml(:\d+)?: ")
+
+    # A pipe with its material outside: about its axis, and across it.
+    def test_has_the_moments_of_a_pipe(self):
+        text = TUBE.replace('material = "steel"\n',
+                            'material = "steel"\nside = "outside"\n', 1) + """
+[responses.centre]
+kind = "centre_of_mass"
+direction = [0, 0, 1]
+
+[responses.axial]
+kind = "inertia"
+axis = [0, 0, 1]
+
+[responses.across]
+kind = "inertia"
+axis = [1, 0, 0]
+through = [0, 0, 50]
+"""
+        result, _, _ = self.run_case(text, "--no-pictures", "--set",
+                                     "design.wall.initial=5")
+        found = result["responses"]
+        square = 50 ** 2 + 55 ** 2
+        mass = 7.85e-9 * math.pi * (55 ** 2 - 50 ** 2) * LENGTH
+        self.assertLess(abs(found["centre"]), 0.05)
+        self.assertLess(abs(found["axial"] / (mass * square / 2) - 1), 4e-3)
+        self.assertLess(abs(found["across"] / (mass * (
+            square / 4 + LENGTH ** 2 / 12 + 50 ** 2)) - 1), 4e-3)
 
     def test_tells_of_a_shell_that_can_move(self):
         text = STRIP.replace(', fix_rotation = "xyz"', "")
