@@ -1,6 +1,7 @@
 #include "core/geometry/surface_nodes.h"
 
 #include <algorithm>
+#include <array>
 
 #include <fmt/format.h>
 
@@ -43,6 +44,35 @@ std::vector<char> halved_edges(const SurfaceNodes& nodes,
     }
   }
   return halved;
+}
+
+/// Corners, then middles (01) (12) (20).
+using SixNodes = std::array<Vec3, 6>;
+
+/// The least normal area of a six-node triangle at its nodes over that of the
+/// flat one.
+double least_area_ratio(const SixNodes& x) {
+  const Vec3 flat = (x[1] - x[0]).cross(x[2] - x[0]);
+  double least = 1.0;
+  for (int node = 0; node < 6; ++node) {
+    Vec3 l = Vec3::Zero();
+    if (node < 3) {
+      l[node] = 1.0;
+    } else {
+      l[node - 3] = 0.5;
+      l[(node - 2) % 3] = 0.5;
+    }
+    std::array<Vec3, 3> by;  // by each barycentric coordinate
+    for (int i = 0; i < 3; ++i) {
+      const int next = (i + 1) % 3;
+      const int last = (i + 2) % 3;
+      by[i] = (4.0 * l[i] - 1.0) * x[i] + 4.0 * l[next] * x[3 + i] +
+              4.0 * l[last] * x[3 + last];
+    }
+    const Vec3 area = (by[1] - by[0]).cross(by[2] - by[0]);
+    least = std::min(least, area.dot(flat) / flat.squaredNorm());
+  }
+  return least;
 }
 
 /// Splits facets one by one into a new surface.
@@ -228,6 +258,31 @@ SurfaceNodes surface_nodes(SurfaceMesh mesh, std::vector<int> corner,
     nodes.mid.push_back(curved ? m : -1);
   }
   return nodes;
+}
+
+int straighten_folded(SurfaceNodes& nodes, const Points& points) {
+  constexpr double kLeastArea = 0.2;
+  int count = 0;
+  for (bool changed = true; changed;) {  // neighbors may fold for it
+    changed = false;
+    const QuadraticSurface surface = nodes.at(points);
+    for (std::size_t f = 0; f < nodes.mesh.facets.size(); ++f) {
+      SixNodes x;
+      for (int k = 0; k < 3; ++k) {
+        x[k] = surface.base.points[nodes.mesh.facets[f][k]];
+        x[3 + k] = surface.mid[nodes.facet_edges[f][k]];
+      }
+      if (least_area_ratio(x) >= kLeastArea) {
+        continue;
+      }
+      for (const int e : nodes.facet_edges[f]) {
+        changed = changed || nodes.mid[e] >= 0;
+        count += nodes.mid[e] >= 0 ? 1 : 0;
+        nodes.mid[e] = -1;
+      }
+    }
+  }
+  return count;
 }
 
 SurfaceNodes split_facets(const SurfaceNodes& nodes,

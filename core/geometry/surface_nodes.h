@@ -35,6 +35,11 @@ SurfaceNodes surface_nodes(SurfaceMesh mesh, std::vector<int> corner,
                            const EdgeMiddles& middles,
                            const std::vector<char>& straight);
 
+/// Makes edges straight, all three of a facet whose middles fold it at these
+/// points: where the normal area at a node falls below a fifth of the flat
+/// facet's. Returns how many edges.
+int straighten_folded(SurfaceNodes& nodes, const Points& points);
+
 /// The surface with the marked facets (one char each) in four, facets that have
 /// two neighbours in four too, and those with one such neighbour in two ("red,
 /// green": Bank, Sherman, Weiser 1983). All old corners stay with their

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/math/blas_threads.h"
 #include "core/memory.h"
 #include "core/operation_count.h"
 
@@ -18,38 +19,6 @@ namespace meniscus {
 namespace {
 
 using Long = SuiteSparse_long;
-
-/// BLAS sums change with its number of threads, so it runs on one. Told once:
-/// telling it writes to variables that other threads' BLAS reads.
-void use_one_blas_thread() {
-  static std::once_flag told;
-  std::call_once(told, [] { openblas_set_num_threads(1); });
-}
-
-/// OpenBLAS asks for its buffer again and again where a limit of address space
-/// refuses it, without end. Each thread takes its own at its first system; they
-/// are kept.
-void require_blas_buffer() {
-  static thread_local bool taken = false;
-  if (taken) {
-    return;
-  }
-  constexpr std::size_t kBuffer = std::size_t{130} << 20;  // of 0.3.21: 128
-  if (!has_address_space(kBuffer)) {
-    throw SolverError(fmt::format(
-        "the limit of address space (ulimit -v) leaves no {} MB for the "
-        "buffers of linear algebra; raise it",
-        kBuffer >> 20));
-  }
-  // Large enough that OpenBLAS uses its buffer.
-  constexpr int kSize = 64;
-  std::vector<double> square(static_cast<std::size_t>(kSize) * kSize, 1.0);
-  std::vector<double> product(square.size());
-  cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, kSize, kSize, kSize,
-              1.0, square.data(), kSize, square.data(), kSize, 0.0,
-              product.data(), kSize);
-  taken = true;
-}
 
 /// While it lives, OpenMP's regions in this thread have one thread. CHOLMOD
 /// asks for four, whatever this program is to use: they came and went by the
@@ -71,8 +40,7 @@ class OneThread {
 class Session {
  public:
   Session() {
-    use_one_blas_thread();
-    require_blas_buffer();
+    prepare_blas();
     cholmod_l_start(&common);
     common.print = 0;
     common.error_handler = nullptr;
@@ -117,11 +85,60 @@ LowerView make_view(const SparseMatrix& lower) {
   return view;
 }
 
+/// METIS seeds and draws from the C library's one random sequence: in two
+/// threads at once the order would depend on their timing.
+std::mutex& one_metis_at_a_time() {
+  static std::mutex one;
+  return one;
+}
+
 /// What CHOLMOD's status says, and what to try.
 std::string status_text(int status) {
   return status == CHOLMOD_OUT_OF_MEMORY
              ? "not enough memory; fewer unknowns need less"
              : fmt::format("CHOLMOD status {}", status);
+}
+
+/// One of cholmod_solve's systems.
+Eigen::MatrixXd solved_step(cholmod_factor& factor, int system,
+                            const Eigen::MatrixXd& right,
+                            cholmod_common& common) {
+  cholmod_dense b{};
+  b.nrow = factor.n;
+  b.ncol = static_cast<size_t>(right.cols());
+  b.nzmax = b.nrow * b.ncol;
+  b.d = b.nrow;
+  b.x = const_cast<double*>(right.data());  // NOLINT: CHOLMOD only reads
+  b.xtype = CHOLMOD_REAL;
+  b.dtype = CHOLMOD_DOUBLE;
+  cholmod_dense* x = cholmod_l_solve(system, &factor, &b, &common);
+  if (x == nullptr) {
+    throw SolverError(fmt::format("triangular solve of {} unknowns failed: {}",
+                                  factor.n, status_text(common.status)));
+  }
+  Eigen::MatrixXd result = Eigen::Map<const Eigen::MatrixXd>(
+      static_cast<const double*>(x->x), right.rows(), right.cols());
+  cholmod_l_free_dense(&x, &common);
+  return result;
+}
+
+/// each(column, row, value) of a supernodal L, columns ascending.
+template <class Each>
+void for_each_entry(const cholmod_factor& factor, const Each& each) {
+  const auto* super = static_cast<const Long*>(factor.super);
+  const auto* row_start = static_cast<const Long*>(factor.pi);
+  const auto* value_start = static_cast<const Long*>(factor.px);
+  const auto* row = static_cast<const Long*>(factor.s);
+  const auto* value = static_cast<const double*>(factor.x);
+  for (size_t s = 0; s < factor.nsuper; ++s) {
+    const Long rows = row_start[s + 1] - row_start[s];
+    for (Long c = 0; c < super[s + 1] - super[s]; ++c) {
+      for (Long r = c; r < rows; ++r) {
+        each(super[s] + c, row[row_start[s] + r],
+             value[value_start[s] + c * rows + r]);
+      }
+    }
+  }
 }
 
 /// Of the numeric factor and the work space, known once it is analysed.
@@ -168,10 +185,7 @@ std::vector<int> nested_dissection(const SparseMatrix& lower) {
       order[c] = c;
     }
   } else {
-    // METIS seeds and draws from the C library's one random sequence: in two
-    // threads at once the order would depend on their timing.
-    static std::mutex one_at_a_time;
-    const std::lock_guard lock(one_at_a_time);
+    const std::lock_guard lock(one_metis_at_a_time());
     idx_t count = n;
     const int status =
         METIS_NodeND(&count, start.data(), neighbours.data(), nullptr, nullptr,
@@ -183,6 +197,31 @@ std::vector<int> nested_dissection(const SparseMatrix& lower) {
     }
   }
   return {order.begin(), order.end()};
+}
+
+std::vector<int> bisected_graph(const std::vector<int>& start,
+                                const std::vector<int>& neighbors, int levels) {
+  const std::size_t n = start.size() - 1;
+  if (levels == 0 || neighbors.empty()) {
+    return std::vector<int>(n, 0);
+  }
+  std::vector<idx_t> xadj(start.begin(), start.end());
+  std::vector<idx_t> adjacency(neighbors.begin(), neighbors.end());
+  std::vector<idx_t> part(n);
+  idx_t count = static_cast<idx_t>(n);
+  idx_t constraints = 1;
+  idx_t parts = idx_t{1} << levels;
+  idx_t cut = 0;
+  const std::lock_guard lock(one_metis_at_a_time());
+  const int status = METIS_PartGraphRecursive(
+      &count, &constraints, xadj.data(), adjacency.data(), nullptr, nullptr,
+      nullptr, &parts, nullptr, nullptr, nullptr, &cut, part.data());
+  if (status != METIS_OK) {
+    throw SolverError(
+        fmt::format("a graph of {} vertices cannot be parted (METIS status {})",
+                    n, status));
+  }
+  return {part.begin(), part.end()};
 }
 
 std::vector<int> expand_order(const std::vector<int>& node_order, int block) {
@@ -295,38 +334,82 @@ bool SymmetricFactor::factorize(const SparseMatrix& lower) {
   return true;
 }
 
-Eigen::MatrixXd SymmetricFactor::solve(const Eigen::MatrixXd& right) const {
+void SymmetricFactor::check_rows(const Eigen::MatrixXd& right) const {
   const size_t n = impl_->factor == nullptr ? 0 : impl_->factor->n;
   if (static_cast<size_t>(right.rows()) != n) {
     throw SolverError(fmt::format(
         "solve: right side has {} rows, the factor {}", right.rows(), n));
   }
+}
+
+void SymmetricFactor::count_solve(Eigen::Index columns) const {
+  // Per entry of L below the diagonal four, per pivot two, of each column.
+  count_operations((4.0 * impl_->factor_entries -
+                    2.0 * static_cast<double>(impl_->factor->n)) *
+                   static_cast<double>(columns));
+}
+
+Eigen::MatrixXd SymmetricFactor::solve(const Eigen::MatrixXd& right) const {
+  check_rows(right);
   if (right.size() == 0) {
     return right;
   }
-  // Per entry of L below the diagonal four, per pivot two, of each column.
-  count_operations(
-      (4.0 * impl_->factor_entries - 2.0 * static_cast<double>(n)) *
-      static_cast<double>(right.cols()));
+  count_solve(right.cols());
   Session session;  // own workspace: solve may run in several threads
-  cholmod_dense b{};
-  b.nrow = n;
-  b.ncol = static_cast<size_t>(right.cols());
-  b.nzmax = b.nrow * b.ncol;
-  b.d = n;
-  b.x = const_cast<double*>(right.data());  // NOLINT: CHOLMOD only reads
-  b.xtype = CHOLMOD_REAL;
-  b.dtype = CHOLMOD_DOUBLE;
-  cholmod_dense* x =
-      cholmod_l_solve(CHOLMOD_A, impl_->factor, &b, &session.common);
-  if (x == nullptr) {
-    throw SolverError(fmt::format("triangular solve of {} unknowns failed: {}",
-                                  n, status_text(session.common.status)));
+  return solved_step(*impl_->factor, CHOLMOD_A, right, session.common);
+}
+
+Eigen::MatrixXd SymmetricFactor::solve_leading(const Eigen::MatrixXd& right,
+                                               int count) const {
+  check_rows(right);
+  if (right.size() == 0) {
+    return right;
   }
-  Eigen::MatrixXd result = Eigen::Map<const Eigen::MatrixXd>(
-      static_cast<const double*>(x->x), right.rows(), right.cols());
-  cholmod_l_free_dense(&x, &session.common);
-  return result;
+  count_solve(right.cols());
+  Session session;
+  const auto step = [&](int system, const Eigen::MatrixXd& b) {
+    return solved_step(*impl_->factor, system, b, session.common);
+  };
+  Eigen::MatrixXd b = right;
+  b.bottomRows(count).setZero();
+  Eigen::MatrixXd y = step(CHOLMOD_Pt, step(CHOLMOD_L, step(CHOLMOD_P, b)));
+  y.bottomRows(count).setZero();
+  return step(CHOLMOD_Pt, step(CHOLMOD_Lt, step(CHOLMOD_P, y)));
+}
+
+Eigen::MatrixXd SymmetricFactor::schur_complement(int count) const {
+  const cholmod_factor& factor = *impl_->factor;
+  const auto* order = static_cast<const Long*>(factor.Perm);
+  const auto n = static_cast<Long>(factor.n);
+  const Long leading = n - count;
+  std::vector<Long> last;  // in their order of elimination
+  std::vector<int> place(factor.n, -1);
+  for (Long k = 0; k < n; ++k) {
+    if (order[k] >= leading) {
+      place[k] = static_cast<int>(last.size());
+      last.push_back(order[k] - leading);
+    }
+  }
+  Eigen::MatrixXd L = Eigen::MatrixXd::Zero(count, count);
+  for_each_entry(factor, [&](Long column, Long row, double value) {
+    if (place[column] >= 0 && place[row] >= 0) {
+      L(place[row], place[column]) = value;
+    }
+  });
+  prepare_blas();
+  Eigen::MatrixXd product = Eigen::MatrixXd::Zero(count, count);
+  if (count > 0) {
+    cblas_dsyrk(CblasColMajor, CblasLower, CblasNoTrans, count, count, 1.0,
+                L.data(), count, 0.0, product.data(), count);
+  }
+  count_operations(static_cast<double>(count) * count * count);
+  Eigen::MatrixXd schur(count, count);
+  for (int c = 0; c < count; ++c) {
+    for (int r = c; r < count; ++r) {
+      schur(last[r], last[c]) = schur(last[c], last[r]) = product(r, c);
+    }
+  }
+  return schur;
 }
 
 int SymmetricFactor::failed_column() const { return impl_->failed_column; }

@@ -23,6 +23,12 @@ enum class FactorKind {
 /// dissection; entry k is the k-th unknown to eliminate.
 std::vector<int> nested_dissection(const SparseMatrix& lower);
 
+/// Parts of a graph, 2^levels of them, by METIS's recursive bisection, so that
+/// part k and k ^ 1 are halves of one, and so on up: one number per vertex.
+/// `neighbors` of vertex v stand from start[v] to start[v + 1].
+std::vector<int> bisected_graph(const std::vector<int>& start,
+                                const std::vector<int>& neighbors, int levels);
+
 /// The order of nodes with `block` unknowns each, from the order of nodes.
 std::vector<int> expand_order(const std::vector<int>& node_order, int block);
 
@@ -44,6 +50,13 @@ class SymmetricFactor {
   /// Solves A x = b for one or several columns. Needs a factorisation.
   Eigen::MatrixXd solve(const Eigen::MatrixXd& right) const;
 
+  /// With a Cholesky factor of A whose last `count` unknowns the given order
+  /// has last, B, and the others, I: A_BB - A_BI A_II^-1 A_IB, both triangles.
+  Eigen::MatrixXd schur_complement(int count) const;
+  /// With such a factor: A_II^-1 of the leading rows; the last `count` rows are
+  /// not read, and are 0 in what is returned.
+  Eigen::MatrixXd solve_leading(const Eigen::MatrixXd& right, int count) const;
+
   int failed_column() const;
   /// Number of negative pivots (Indefinite): by Sylvester's law the number of
   /// negative eigenvalues of A.
@@ -52,6 +65,9 @@ class SymmetricFactor {
   long long entries() const;
 
  private:
+  void check_rows(const Eigen::MatrixXd& right) const;
+  void count_solve(Eigen::Index columns) const;
+
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

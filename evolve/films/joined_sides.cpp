@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <optional>
 #include <set>
 #include <utility>
@@ -18,20 +19,32 @@ bool has(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
+std::map<std::string, int> curve_numbers(const FilmSystem& system) {
+  std::map<std::string, int> numbers;
+  for (std::size_t c = 0; c < system.curves.size(); ++c) {
+    numbers.emplace(system.curves[c].name, static_cast<int>(c));
+  }
+  return numbers;
+}
+
 /// Films and solids by the curve that they end at.
 std::vector<std::set<std::string>> users_of_curves(const FilmSystem& system) {
+  const std::map<std::string, int> numbers = curve_numbers(system);
   std::vector<std::set<std::string>> users(system.curves.size());
-  for (std::size_t c = 0; c < system.curves.size(); ++c) {
-    for (const FilmSpec& film : system.films) {
-      if (has(film.curves, system.curves[c].name)) {
-        users[c].insert(film.name);
+  const auto add = [&](const std::vector<std::string>& names,
+                       const std::string& user) {
+    for (const std::string& name : names) {
+      const auto curve = numbers.find(name);
+      if (curve != numbers.end()) {
+        users[static_cast<std::size_t>(curve->second)].insert(user);
       }
     }
-    for (const CapSpec& cap : system.caps) {
-      if (has(cap.curves(), system.curves[c].name)) {
-        users[c].insert(cap.name);
-      }
-    }
+  };
+  for (const FilmSpec& film : system.films) {
+    add(film.curves, film.name);
+  }
+  for (const CapSpec& cap : system.caps) {
+    add(cap.curves(), cap.name);
   }
   return users;
 }
@@ -51,40 +64,104 @@ double nearest_place(const curves::Curve& curve, const Vec3& place) {
   return nearest ? *nearest : nearest_parameter(curve.shape, place, 0.0);
 }
 
-/// How many of the films that `film` joins end at a curve.
-int joined_films_at(const FilmSystem& system, int film,
-                    const std::string& curve) {
-  const std::vector<std::string>& joins =
-      system.films[static_cast<std::size_t>(film)].joins;
-  return static_cast<int>(std::count_if(
-      system.films.begin(), system.films.end(), [&](const FilmSpec& other) {
-        return has(joins, other.name) && has(other.curves, curve);
-      }));
-}
+/// A curve that holds films which others join: it lies within a ball about one
+/// of its points.
+struct HeldCurve {
+  Vec3 point;
+  double radius = 0.0;  // half of its length [length]
+};
 
-JoinEnd nearest_end(const FilmSystem& system, int film, const Vec3& place,
-                    bool held) {
-  JoinEnd end{.film = film,
-              .place = place,
-              .held = held,
-              .distance = std::numeric_limits<double>::infinity()};
-  for (std::size_t c = 0; c < system.curves.size(); ++c) {
-    const curves::Curve& curve = system.curves[c];
-    const int there = joined_films_at(system, film, curve.name);
-    if (held ? there == 0 : there < 2 || curve.free) {
-      continue;
-    }
-    const double t = nearest_place(curve, place);
-    const double off = (curves::point_at(curve.shape, t) - place).norm();
-    if (off < end.distance) {
-      end.curve = static_cast<int>(c);
-      end.t = t;
-      end.distance = off;
-      end.meets = off <= join_reach(curve);
+/// Where films' lines may end.
+class EndFinder {
+ public:
+  explicit EndFinder(const FilmSystem& system)
+      : system_(system),
+        numbers_(curve_numbers(system)),
+        curves_(system.curves.size()) {
+    for (std::size_t f = 0; f < system.films.size(); ++f) {
+      films_.emplace(system.films[f].name, f);
     }
   }
-  return end;
-}
+
+  JoinEnd nearest(int film, const Vec3& place, bool held) {
+    struct Candidate {
+      double at_least = 0.0;  // away
+      int curve = 0;
+    };
+    std::vector<Candidate> candidates;
+    for (const auto& [c, there] : joined_films_at(film)) {
+      if (held || (there > 1 && !system_.curves[c].free)) {
+        const HeldCurve& curve = ball(c);
+        candidates.push_back(
+            {std::max((curve.point - place).norm() - curve.radius, 0.0), c});
+      }
+    }
+    std::stable_sort(candidates.begin(), candidates.end(),
+                     [](const Candidate& a, const Candidate& b) {
+                       return a.at_least < b.at_least;
+                     });
+    JoinEnd end{.film = film,
+                .place = place,
+                .held = held,
+                .distance = std::numeric_limits<double>::infinity()};
+    for (const Candidate& candidate : candidates) {
+      if (candidate.at_least > end.distance) {
+        break;
+      }
+      const int c = candidate.curve;
+      const curves::Curve& curve = system_.curves[c];
+      const double t = nearest_place(curve, place);
+      const double off = (curves::point_at(curve.shape, t) - place).norm();
+      if (off < end.distance || (off == end.distance && c < end.curve)) {
+        end.curve = c;
+        end.t = t;
+        end.distance = off;
+        end.meets = off <= join_reach(curve);
+      }
+    }
+    return end;
+  }
+
+ private:
+  /// By curve: how many of the films that `film` joins end there.
+  const std::map<int, int>& joined_films_at(int film) {
+    const auto [known, is_new] = counts_.try_emplace(film);
+    if (is_new) {
+      const std::vector<std::string>& joins = system_.films[film].joins;
+      for (const std::string& name :
+           std::set<std::string>(joins.begin(), joins.end())) {
+        const auto other = films_.find(name);
+        if (other == films_.end()) {
+          continue;
+        }
+        const auto& ends = system_.films[other->second].curves;
+        for (const std::string& curve :
+             std::set<std::string>(ends.begin(), ends.end())) {
+          const auto number = numbers_.find(curve);
+          if (number != numbers_.end()) {
+            ++known->second[number->second];
+          }
+        }
+      }
+    }
+    return known->second;
+  }
+
+  const HeldCurve& ball(int curve) {
+    std::optional<HeldCurve>& known = curves_[curve];
+    if (!known) {
+      const curves::CurveShape& shape = system_.curves[curve].shape;
+      known = {curves::point_at(shape, 0.0), 0.5 * curves::length_of(shape)};
+    }
+    return *known;
+  }
+
+  const FilmSystem& system_;
+  std::map<std::string, int> numbers_;
+  std::map<std::string, std::size_t> films_;
+  std::map<int, std::map<int, int>> counts_;  // by film
+  std::vector<std::optional<HeldCurve>> curves_;
+};
 
 }  // namespace
 
@@ -140,6 +217,7 @@ std::vector<JoinEnd> join_ends(const FilmSystem& system) {
   }
   const FreePlaces free(system.curves,
                         std::vector<char>(system.curves.size(), 1));
+  EndFinder finder(system);
   for (const JoinedSide& side : joined) {
     const std::vector<CurveSide> sides =
         sides_of(system.curves[side.curve].shape);
@@ -148,9 +226,8 @@ std::vector<JoinEnd> join_ends(const FilmSystem& system) {
       const int corner = k % n;
       const bool held =
           !free.is_free(side.curve, static_cast<double>(corner) / n);
-      const JoinEnd end =
-          nearest_end(system, side.film,
-                      sides[static_cast<std::size_t>(corner)].from, held);
+      const JoinEnd end = finder.nearest(
+          side.film, sides[static_cast<std::size_t>(corner)].from, held);
       if (held || end.curve >= 0) {
         ends.push_back(end);
       }
@@ -183,15 +260,20 @@ std::vector<int> joining_order(const std::vector<FilmSpec>& films) {
 }
 
 bool may_meet(const FilmSystem& system, int a, int b) {
-  for (const FilmSpec& one : system.films) {
-    for (const FilmSpec& other : system.films) {
-      const std::string& first = system.curves[a].name;
-      const std::string& second = system.curves[b].name;
-      const bool apart =
-          (has(one.curves, first) && has(other.curves, second)) ||
-          (has(one.curves, second) && has(other.curves, first));
-      if (apart && (has(one.joins, other.name) ||
-                    (!one.joins.empty() && !other.joins.empty()))) {
+  const auto films_at = [&](int curve) {
+    std::vector<const FilmSpec*> films;
+    for (const FilmSpec& film : system.films) {
+      if (has(film.curves, system.curves[curve].name)) {
+        films.push_back(&film);
+      }
+    }
+    return films;
+  };
+  const std::vector<const FilmSpec*> others = films_at(b);
+  for (const FilmSpec* one : films_at(a)) {
+    for (const FilmSpec* other : others) {
+      if (has(one->joins, other->name) || has(other->joins, one->name) ||
+          (!one->joins.empty() && !other->joins.empty())) {
         return true;
       }
     }

@@ -153,15 +153,27 @@ void FilmJoiner::refine_joined() {
   }
 }
 
-std::vector<int> FilmJoiner::vertices_of(int label) const {
-  std::set<int> result;
-  for (std::size_t f = 0; f < complex_.mesh.facets.size(); ++f) {
-    if (complex_.mesh.facet_label[f] == label) {
-      result.insert(complex_.mesh.facets[f].begin(),
-                    complex_.mesh.facets[f].end());
+const FilmJoiner::Net& FilmJoiner::net_of(int label) {
+  Net& net = nets_[label];
+  const SurfaceMesh& mesh = complex_.mesh;
+  bool grew = false;
+  for (; net.facets < mesh.facets.size(); ++net.facets) {
+    if (mesh.facet_label[net.facets] != label) {
+      continue;
+    }
+    const Triangle& t = mesh.facets[net.facets];
+    for (int k = 0; k < 3; ++k) {
+      net.next[t[k]].insert({t[(k + 1) % 3], t[(k + 2) % 3]});
+    }
+    grew = true;
+  }
+  if (grew) {
+    net.vertices.clear();
+    for (const auto& [vertex, neighbors] : net.next) {
+      net.vertices.push_back(vertex);
     }
   }
-  return {result.begin(), result.end()};
+  return net;
 }
 
 /// -1: none are given.
@@ -180,13 +192,13 @@ int FilmJoiner::nearest(const std::vector<int>& vertices,
 }
 
 /// Of the films that it joins the one along which a side lies.
-int FilmJoiner::label_for(int film, const Points& side) const {
+int FilmJoiner::label_for(int film, const Points& side) {
   int best = -1;
   double least = std::numeric_limits<double>::infinity();
   for (const std::string& name :
        system_.films[static_cast<std::size_t>(film)].joins) {
     const int label = film_number(system_, name);
-    const std::vector<int> vertices = vertices_of(label);
+    const std::vector<int>& vertices = net_of(label).vertices;
     double sum = 0.0;
     for (const Vec3& p : side) {
       sum += (complex_.mesh.points[nearest(vertices, p)] - p).norm();
@@ -202,9 +214,9 @@ int FilmJoiner::label_for(int film, const Points& side) const {
 /// The vertex of all these films at which a corner of `film` meets them.
 int FilmJoiner::corner_on(int film, const Corner& corner,
                           const std::vector<int>& labels) {
-  std::vector<int> there = vertices_of(labels.front());
+  std::vector<int> there = net_of(labels.front()).vertices;
   for (const int label : labels) {
-    const std::vector<int> more = vertices_of(label);
+    const std::vector<int>& more = net_of(label).vertices;
     std::erase_if(there, [&](int v) {
       return !std::binary_search(more.begin(), more.end(), v);
     });
@@ -251,16 +263,7 @@ int FilmJoiner::corner_on(int film, const Corner& corner,
 std::vector<int> FilmJoiner::chain(int film, int label, int from, int to,
                                    const Points& guess) {
   const Points& points = complex_.mesh.points;
-  std::map<int, std::set<int>> next;
-  for (std::size_t f = 0; f < complex_.mesh.facets.size(); ++f) {
-    if (complex_.mesh.facet_label[f] != label) {
-      continue;
-    }
-    const Triangle& t = complex_.mesh.facets[f];
-    for (int k = 0; k < 3; ++k) {
-      next[t[k]].insert({t[(k + 1) % 3], t[(k + 2) % 3]});
-    }
-  }
+  const std::map<int, std::set<int>>& next = net_of(label).next;
   const auto passes = [&](int v) {
     return complex_.vertices[v].kind == films::VertexKind::Free &&
            taken_[v] == 0;
@@ -280,7 +283,11 @@ std::vector<int> FilmJoiner::chain(int film, int label, int from, int to,
     if (so_far > cost.at(v)) {
       continue;
     }
-    for (const int w : next[v]) {
+    const auto neighbors = next.find(v);
+    if (neighbors == next.end()) {
+      continue;
+    }
+    for (const int w : neighbors->second) {
       const bool along_rim =
           complex_.vertices[v].kind == films::VertexKind::OnCurve &&
           complex_.vertices[w].kind == films::VertexKind::OnCurve;
@@ -324,7 +331,7 @@ std::vector<int> FilmJoiner::closed_chain(int film,
   Points guess = points_of(rim);
   guess.push_back(guess.front());
   const int label = label_for(film, guess);
-  std::vector<int> inside = vertices_of(label);
+  std::vector<int> inside = net_of(label).vertices;
   std::erase_if(inside, [&](int v) {
     return complex_.vertices[v].kind != films::VertexKind::Free ||
            taken_[v] != 0;
@@ -365,6 +372,9 @@ void FilmJoiner::replace(int old, int by) {
   for (Triangle& t : complex_.mesh.facets) {
     std::replace(t.begin(), t.end(), old, by);
   }
+  std::erase_if(nets_, [&](const auto& entry) {
+    return entry.second.next.count(old) > 0;
+  });
   for (films::ComplexEdge& mark : complex_.edges) {
     mark.a = mark.a == old ? by : mark.a;
     mark.b = mark.b == old ? by : mark.b;

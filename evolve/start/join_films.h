@@ -57,9 +57,15 @@ class FilmJoiner {
     Vec3 place;
     bool held = true;
   };
-  std::vector<int> vertices_of(int label) const;
+  /// A film's vertices, ascending, and their neighbours along its edges.
+  struct Net {
+    std::size_t facets = 0;  // of the mesh, so far
+    std::map<int, std::set<int>> next;
+    std::vector<int> vertices;
+  };
+  const Net& net_of(int label);
   int nearest(const std::vector<int>& vertices, const Vec3& place) const;
-  int label_for(int film, const Points& side) const;
+  int label_for(int film, const Points& side);
   int corner_on(int film, const Corner& corner, const std::vector<int>& labels);
   std::vector<int> chain(int film, int label, int from, int to,
                          const Points& guess);
@@ -72,6 +78,7 @@ class FilmJoiner {
   films::FilmComplex& complex_;
   std::vector<films::JoinedSide> sides_;
   std::vector<char> taken_;  // per vertex: on a chain
+  std::map<int, Net> nets_;  // by label
   std::map<int, int> replaced_;
   std::set<int> placed_;  // what corners were replaced by
   std::map<int, std::vector<std::size_t>> corners_;  // by curve

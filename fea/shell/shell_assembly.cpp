@@ -141,19 +141,28 @@ void ShellAssembly::add(int facet, const FacetMatrix& K,
   }
 }
 
-std::vector<int> ShellAssembly::elimination_order() const {
-  const int nodes = freedom_.nodes();
+std::vector<int> ShellAssembly::elimination_order(int last_nodes) const {
+  const int nodes = freedom_.nodes() - last_nodes;
   SparseMatrix graph(nodes, nodes);
-  std::copy(start_.begin(), start_.end(), graph.outerIndexPtr());
-  graph.resizeNonZeros(start_.back());
-  std::copy(row_.begin(), row_.end(), graph.innerIndexPtr());
-  std::fill(graph.valuePtr(), graph.valuePtr() + start_.back(), 1.0);
+  for (int j = 0; j < nodes; ++j) {
+    graph.startVec(j);
+    for (int k = start_[j]; k < start_[j + 1] && row_[k] < nodes; ++k) {
+      graph.insertBack(row_[k], j) = 1.0;
+    }
+  }
+  graph.finalize();
   std::vector<int> order;
   order.reserve(freedom_.unknowns());
-  for (const int node : nested_dissection(graph)) {
+  const auto add = [&](int node) {
     for (int k = 0; k < freedom_.free_count(node); ++k) {
       order.push_back(freedom_.first_unknown(node) + k);
     }
+  };
+  for (const int node : nested_dissection(graph)) {
+    add(node);
+  }
+  for (int node = nodes; node < freedom_.nodes(); ++node) {
+    add(node);
   }
   return order;
 }

@@ -24,8 +24,9 @@ class ShellAssembly {
   /// blocks on the diagonal.
   SparseMatrix sum(const MatrixOfFacet& matrix) const;
 
-  /// Order of elimination of the unknowns by nested dissection of the nodes.
-  std::vector<int> elimination_order() const;
+  /// Order of elimination of the unknowns by nested dissection of the nodes but
+  /// the last ones, which follow.
+  std::vector<int> elimination_order(int last_nodes = 0) const;
 
  private:
   void add(int facet, const FacetMatrix& K, SparseMatrix& sum) const;

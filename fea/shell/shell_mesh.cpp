@@ -101,9 +101,10 @@ void check_shell(const ShellMesh& mesh, const std::vector<Section>& sections) {
       const FacetFrame<double> frame = facet_frame(X, p, nullptr);
       const Vec3 n(frame.axes[2][0], frame.axes[2][1], frame.axes[2][2]);
       if (!(frame.area > 0.0) || !(n.dot(first) >= 0.0)) {
-        throw MeshError(fmt::format(
-            "facet {} of a shell near ({}, {}, {}) is folded or has no area", f,
-            X[0][0], X[0][1], X[0][2]));
+        throw MeshError(
+            fmt::format("facet {} of a shell near ({:.5g}, {:.5g}, {:.5g}) is "
+                        "folded or has no area",
+                        f, X[0][0], X[0][1], X[0][2]));
       }
       first = n;
       if (section.direction && !(n.cross(*section.direction).norm() >

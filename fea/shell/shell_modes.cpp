@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 
@@ -12,6 +13,8 @@
 #include "core/timer.h"
 #include "fea/modes/eigen_shapes.h"
 #include "fea/modes/eigenpairs.h"
+#include "fea/shell/shell_assembly.h"
+#include "fea/shell/shell_factor.h"
 #include "fea/shell/shell_held.h"
 #include "fea/solver/multi_vector.h"
 
@@ -37,18 +40,27 @@ modes::ColumnOperator product_with(const SparseMatrix& lower) {
   };
 }
 
-/// A against K, both on loan, on all unknowns; `factor` of K.
+/// K^-1 times columns, by a factor on loan.
+using Inverse = std::function<Eigen::MatrixXd(const Eigen::MatrixXd& right)>;
+
+template <class Factor>
+Inverse inverse_by(const Factor& factor) {
+  return
+      [&factor](const Eigen::MatrixXd& right) { return factor.solve(right); };
+}
+
+/// A against K, both on loan, on all unknowns; `inverse` of K.
 modes::EigenProblem shell_problem(const SparseMatrix& A, const SparseMatrix& K,
-                                  const SymmetricFactor& factor) {
+                                  const Inverse& inverse) {
   return {
       .rows = K.rows(),
       .dimension = K.rows(),
       .K = product_with(K),
       .A = product_with(A),
       .preconditioner =
-          [&factor](const solver::ColumnsIn& r, const solver::ColumnsOut& z) {
+          [inverse](const solver::ColumnsIn& r, const solver::ColumnsOut& z) {
             solver::ColumnsOut out = z;
-            out = factor.solve(r);
+            out = inverse(r);
           },
       .project = [](const solver::ColumnsOut&) {}};
 }
@@ -56,24 +68,24 @@ modes::EigenProblem shell_problem(const SparseMatrix& A, const SparseMatrix& K,
 /// What rounding leaves of a residual, in the norm of K^-1, of a vector as soft
 /// as the lowest modes with x^T K x = 1: of slender shells more than the usual
 /// tolerance.
-double rounding_of(const SparseMatrix& K, const SymmetricFactor& factor) {
+double rounding_of(const SparseMatrix& K, const Inverse& inverse) {
   constexpr double kBit = std::numeric_limits<double>::epsilon();
   VectorX scattered(K.rows());
   for (Eigen::Index i = 0; i < scattered.size(); ++i) {
     scattered[i] = std::sin(static_cast<double>(i) + 1.0);
   }
-  VectorX x = factor.solve(scattered);
+  VectorX x = inverse(scattered);
   x /= std::sqrt(x.dot(scattered));
   const SparseMatrix size = K.cwiseAbs();
   const VectorX lost =
       kBit * (size.selfadjointView<Eigen::Lower>() * x.cwiseAbs())
                  .cwiseProduct(scattered);
-  return std::sqrt(std::max(0.0, lost.dot(VectorX(factor.solve(lost)))));
+  return std::sqrt(std::max(0.0, lost.dot(VectorX(inverse(lost)))));
 }
 
 double tolerance_of(double asked, const SparseMatrix& K,
-                    const SymmetricFactor& factor) {
-  return std::max(asked, kRounding * rounding_of(K, factor));
+                    const Inverse& inverse) {
+  return std::max(asked, kRounding * rounding_of(K, inverse));
 }
 
 /// The pairs of A against K by those against K - s A, which are of theta / (1 -
@@ -91,10 +103,11 @@ modes::EigenPairs pairs_under_loads(const SparseMatrix& A,
     s *= 0.5;
     shifted = K - s * A;
   }
-  search.tolerance = tolerance_of(search.tolerance, shifted, factor);
+  search.tolerance =
+      tolerance_of(search.tolerance, shifted, inverse_by(factor));
   search.floor = search.floor / (1.0 - s * search.floor);
   modes::EigenPairs pairs = modes::largest_eigenpairs(
-      shell_problem(A, shifted, factor), known.x, search);
+      shell_problem(A, shifted, inverse_by(factor)), known.x, search);
   for (Eigen::Index k = 0; k < pairs.theta.size(); ++k) {
     pairs.residuals[k] /= std::abs(1.0 + s * pairs.theta[k]);
     pairs.theta[k] /= 1.0 + s * pairs.theta[k];
@@ -179,7 +192,7 @@ double bending_square(const ShellMesh& mesh,
 struct ShellVibration {
   const SparseMatrix& M;
   const SparseMatrix& K;  // shifted by shift M
-  const SymmetricFactor& factor;
+  Inverse inverse;
   const ShellFreedom& freedom;
   double shift = 0.0;
   Eigen::MatrixXd motions = {};  // that supports leave
@@ -189,10 +202,10 @@ modes::NaturalModes frequencies_of(const ShellVibration& shell,
                                    const modes::ModeOptions& options) {
   const auto rigid = static_cast<int>(shell.motions.cols());
   const modes::EigenPairs pairs = modes::largest_eigenpairs(
-      shell_problem(shell.M, shell.K, shell.factor),
+      shell_problem(shell.M, shell.K, shell.inverse),
       shapes_to_begin_with(shell.freedom, shell.motions, options.start),
       {.count = options.count + rigid,
-       .tolerance = tolerance_of(options.tolerance, shell.K, shell.factor),
+       .tolerance = tolerance_of(options.tolerance, shell.K, shell.inverse),
        .max_iterations = options.max_iterations,
        .monitor = options.monitor});
   modes::NaturalModes found;
@@ -217,9 +230,10 @@ modes::NaturalModes natural_modes(const ShellSystem& system,
                                   const modes::ModeOptions& options) {
   const Timer timer;
   require_density(sections);
+  const SparseMatrix K = system.stiffness();
   const SparseMatrix M = system.mass();
   modes::NaturalModes found = frequencies_of(
-      {M, system.stiffness(), system.factor(), system.freedom()}, options);
+      {M, K, inverse_by(system.factor()), system.freedom()}, options);
   found.seconds = timer.seconds();
   return found;
 }
@@ -239,20 +253,14 @@ modes::NaturalModes natural_modes(const ShellMesh& mesh,
       motions.cols() > 0 ? bending_square(mesh, sections) : 0.0;
   const SparseMatrix M = assembly.sum(
       [&](int f) { return facet_mass(facet_of(mesh, sections, laws, f)); });
-  const SparseMatrix K = assembly.sum([&](int f) -> FacetMatrix {
+  const auto stiff = [&](int f) -> FacetMatrix {
     const Facet facet = facet_of(mesh, sections, laws, f);
     return condensed(whole_stiffness(facet)) + shift * facet_mass(facet);
-  });
-  SymmetricFactor factor(K, FactorKind::Cholesky, assembly.elimination_order());
-  if (!factor.factorize(K)) {
-    throw SolverError(fmt::format(
-        "the stiffness matrix of a shell of {} unknowns, with what its mass "
-        "adds, is not positive definite: facets are nearly without area, or "
-        "thicknesses far apart",
-        freedom.unknowns()));
-  }
-  modes::NaturalModes found =
-      frequencies_of({M, K, factor, freedom, shift, motions}, options);
+  };
+  const SparseMatrix K = assembly.sum(stiff);
+  const ShellFactor factor(mesh, freedom, stiff);
+  modes::NaturalModes found = frequencies_of(
+      {M, K, inverse_by(factor), freedom, shift, motions}, options);
   found.seconds = timer.seconds();
   return found;
 }
@@ -265,18 +273,19 @@ modes::BucklingModes buckling_modes(const ShellSystem& system,
   const Timer timer;
   const double sign = options.sense == modes::LoadSense::AsGiven ? -1.0 : 1.0;
   const SparseMatrix A = sign * system.geometric(loads, displacement);
-  const SparseMatrix& K = system.stiffness();
+  const SparseMatrix K = system.stiffness();
+  const Inverse inverse = inverse_by(system.factor());
   const solver::Columns start =
       shapes_to_begin_with(system.freedom(), {}, options.start);
   modes::EigenOptions search{
       .count = options.count,
-      .tolerance = tolerance_of(options.tolerance, K, system.factor()),
+      .tolerance = tolerance_of(options.tolerance, K, inverse),
       .floor = 1.0 / options.largest,
       .guards = options.guards,
       .max_iterations = std::min(options.max_iterations, kQuick),
       .monitor = options.monitor};
-  modes::EigenPairs pairs = modes::largest_eigenpairs(
-      shell_problem(A, K, system.factor()), start, search);
+  modes::EigenPairs pairs =
+      modes::largest_eigenpairs(shell_problem(A, K, inverse), start, search);
   if (pairs.end == modes::EigenEnd::TooManyIterations &&
       options.max_iterations > kQuick) {
     search.tolerance = options.tolerance;

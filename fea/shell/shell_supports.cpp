@@ -48,12 +48,26 @@ ShellFreedom::ShellFreedom(int nodes, const std::vector<NodeSupport>& supports)
       }
     }
   }
+  number_unknowns();
+}
+
+ShellFreedom ShellFreedom::of(const std::vector<int>& nodes) const {
+  ShellFreedom part;
+  for (const int node : nodes) {
+    part.held_at_.push_back(held_at_[node]);
+  }
+  part.held_ = held_;
+  part.number_unknowns();
+  return part;
+}
+
+void ShellFreedom::number_unknowns() {
   start_.assign(1, 0);
-  for (int i = 0; i < nodes; ++i) {
+  for (const int held : held_at_) {
     int count = 6;
-    if (held_at_[i] >= 0) {
-      for (const bool held : held_[held_at_[i]].held) {
-        count -= held ? 1 : 0;
+    if (held >= 0) {
+      for (const bool is_held : held_[held].held) {
+        count -= is_held ? 1 : 0;
       }
     }
     start_.push_back(start_.back() + count);

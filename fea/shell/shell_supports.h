@@ -29,6 +29,9 @@ class ShellFreedom {
   /// plane, other axes than before, or two values for one component.
   ShellFreedom(int nodes, const std::vector<NodeSupport>& supports);
 
+  /// The same of some nodes alone, in this order.
+  ShellFreedom of(const std::vector<int>& nodes) const;
+
   int nodes() const { return static_cast<int>(start_.size()) - 1; }
   int unknowns() const { return start_.back(); }
   int first_unknown(int node) const { return start_[node]; }
@@ -44,6 +47,9 @@ class ShellFreedom {
   VectorX restrict(const VectorX& nodal) const;
 
  private:
+  ShellFreedom() = default;
+  void number_unknowns();
+
   struct Held {
     std::array<bool, 6> held = {};
     Mat3 axes = Mat3::Identity();

@@ -23,36 +23,36 @@ std::vector<LaminateLaw> checked_laws(const ShellMesh& mesh,
 ShellSystem::ShellSystem(const ShellMesh& mesh,
                          const std::vector<Section>& sections,
                          const std::vector<NodeSupport>& supports,
-                         const FacetRule& rule)
+                         const FacetRule& rule,
+                         const ShellFactorOptions& options)
     : mesh_(mesh),
       sections_(sections),
       rule_(rule),
       laws_(checked_laws(mesh, sections)),
       freedom_(static_cast<int>(mesh.nodes.size()), supports),
-      assembly_(mesh_, freedom_),
-      K_(assembly_.sum([this](int facet) {
-        return condensed(
-            whole_stiffness(facet_of(mesh_, sections_, laws_, facet), rule_));
-      })) {
+      assembly_(mesh_, freedom_) {
   check_held(mesh_, freedom_);
-  factor_.emplace(K_, FactorKind::Cholesky, assembly_.elimination_order());
-  if (!factor_->factorize(K_)) {
-    throw SolverError(fmt::format(
-        "the stiffness matrix of a shell of {} unknowns is not positive "
-        "definite: facets are nearly without area, or thicknesses far apart",
-        freedom_.unknowns()));
-  }
+  factor_.emplace(
+      mesh_, freedom_, [this](int facet) { return stiffness_of(facet); },
+      options);
+}
+
+FacetMatrix ShellSystem::stiffness_of(int facet) const {
+  return condensed(
+      whole_stiffness(facet_of(mesh_, sections_, laws_, facet), rule_));
+}
+
+SparseMatrix ShellSystem::stiffness() const {
+  return assembly_.sum([this](int facet) { return stiffness_of(facet); });
 }
 
 VectorX ShellSystem::stiffness_times(const VectorX& u) const {
   std::vector<FacetVector> forces(mesh_.facets.size());
-  parallel_for(
-      static_cast<std::ptrdiff_t>(forces.size()), [&](std::ptrdiff_t k) {
-        forces[k] = condensed(whole_stiffness(
-                        facet_of(mesh_, sections_, laws_, static_cast<int>(k)),
-                        rule_)) *
-                    numbers_of(mesh_, static_cast<int>(k), u);
-      });
+  parallel_for(static_cast<std::ptrdiff_t>(forces.size()),
+               [&](std::ptrdiff_t k) {
+                 const auto facet = static_cast<int>(k);
+                 forces[k] = stiffness_of(facet) * numbers_of(mesh_, facet, u);
+               });
   VectorX f = VectorX::Zero(u.size());
   for (std::size_t k = 0; k < forces.size(); ++k) {
     for (int i = 0; i < kNodes; ++i) {

@@ -1,4 +1,4 @@
-/// K u = f of one shell: assembled, factored, solved.
+/// K u = f of one shell: factored, solved.
 #pragma once
 
 #include <optional>
@@ -7,6 +7,7 @@
 
 #include "core/math/linear_solve.h"
 #include "fea/shell/shell_assembly.h"
+#include "fea/shell/shell_factor.h"
 #include "fea/shell/shell_loads.h"
 #include "fea/shell/shell_mesh.h"
 #include "fea/shell/shell_supports.h"
@@ -29,7 +30,8 @@ class ShellSystem {
   /// runs out.
   ShellSystem(const ShellMesh& mesh, const std::vector<Section>& sections,
               const std::vector<NodeSupport>& supports,
-              const FacetRule& rule = facet_rule());
+              const FacetRule& rule = facet_rule(),
+              const ShellFactorOptions& options = {});
 
   ShellSolution solve(const ShellLoads& loads) const;
 
@@ -38,8 +40,9 @@ class ShellSystem {
   VectorX solve_forces(const VectorX& forces) const;
 
   const ShellFreedom& freedom() const { return freedom_; }
-  const SparseMatrix& stiffness() const { return K_; }
-  const SymmetricFactor& factor() const { return *factor_; }
+  const ShellFactor& factor() const { return *factor_; }
+  /// Stiffness on the unknowns, lower triangle; assembled anew.
+  SparseMatrix stiffness() const;
   /// Mass on the same unknowns.
   SparseMatrix mass() const;
   /// Geometric stiffness (facet_geometric.h) of a solution under its loads, on
@@ -49,6 +52,7 @@ class ShellSystem {
                          const VectorX& displacement) const;
 
  private:
+  FacetMatrix stiffness_of(int facet) const;
   VectorX stiffness_times(const VectorX& u) const;
 
   const ShellMesh& mesh_;
@@ -57,8 +61,7 @@ class ShellSystem {
   std::vector<LaminateLaw> laws_;
   ShellFreedom freedom_;
   ShellAssembly assembly_;
-  SparseMatrix K_;
-  std::optional<SymmetricFactor> factor_;
+  std::optional<ShellFactor> factor_;
 };
 
 }  // namespace meniscus::shell

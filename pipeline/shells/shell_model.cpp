@@ -1,7 +1,9 @@
 #include "pipeline/shells/shell_model.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 #include <set>
 
 #include <fmt/format.h>
@@ -37,60 +39,81 @@ SurfaceNodes nodes_of(const walls::WallFilms& films) {
                        straight);
 }
 
-/// The film's edges of which both ends and the middle are on the curve.
-Line edges_on(const SurfaceNodes& nodes, int label,
-              const std::set<int>& vertices) {
-  const auto corners = static_cast<int>(nodes.corner.size());
-  std::set<int> taken;
-  Line line;
-  for (std::size_t f = 0; f < nodes.mesh.facets.size(); ++f) {
-    for (int k = 0; k < 3 && nodes.mesh.facet_label[f] == label; ++k) {
-      const int a = nodes.mesh.facets[f][k];
-      const int b = nodes.mesh.facets[f][(k + 1) % 3];
-      const int edge = nodes.facet_edges[f][k];
-      if (vertices.contains(nodes.corner[a]) &&
-          vertices.contains(nodes.corner[b]) &&
-          vertices.contains(nodes.mid[edge]) && taken.insert(edge).second) {
-        line.push_back({a, b, corners + edge});
+/// Points along a curve, or in a plane on which films slide.
+struct NamedPoints {
+  std::string ending;  // of the rims there: "/rim:CURVE", "/symmetry_1"
+  std::vector<int> vertices;
+};
+
+std::vector<NamedPoints> named_points(const walls::WallFilms& films) {
+  std::vector<NamedPoints> result;
+  for (const walls::RimName& name : films.names) {
+    result.push_back({"/rim:" + name.curve, name.vertices});
+  }
+  for (std::size_t p = 0; p < films.planes.planes.size(); ++p) {
+    NamedPoints& plane =
+        result.emplace_back(NamedPoints{"/" + films.planes.planes[p].rim, {}});
+    for (std::size_t v = 0; v < films.planes.at.size(); ++v) {
+      const std::vector<int>& own = films.planes.at[v];
+      if (std::count(own.begin(), own.end(), static_cast<int>(p)) > 0) {
+        plane.vertices.push_back(static_cast<int>(v));
       }
     }
   }
-  return line;
+  return result;
 }
 
-std::map<std::string, Line> rims_of(const walls::WallFilms& films,
-                                    const SurfaceNodes& nodes) {
-  std::map<std::string, Line> rims;
-  for (std::size_t label = 0; label < films.mesh.labels.size(); ++label) {
-    for (const walls::RimName& name : films.names) {
-      const Line line = edges_on(nodes, static_cast<int>(label),
-                                 {name.vertices.begin(), name.vertices.end()});
-      if (!line.empty()) {
-        Line& rim = rims[films.mesh.labels[label] + "/rim:" + name.curve];
-        rim.insert(rim.end(), line.begin(), line.end());
+/// Per point: the rims that it is on, ascending.
+std::map<int, std::vector<int>> rims_at(const std::vector<NamedPoints>& names) {
+  std::map<int, std::vector<int>> rims;
+  for (std::size_t n = 0; n < names.size(); ++n) {
+    for (const int v : names[n].vertices) {
+      std::vector<int>& at = rims[v];
+      if (at.empty() || at.back() != static_cast<int>(n)) {
+        at.push_back(static_cast<int>(n));
       }
     }
   }
   return rims;
 }
 
-/// The films' edges in a plane on which they slide.
-void add_ends(const walls::WallFilms& films, const SurfaceNodes& nodes,
-              std::size_t plane, std::map<std::string, Line>& rims) {
-  std::set<int> vertices;
-  for (std::size_t v = 0; v < films.planes.at.size(); ++v) {
-    const std::vector<int>& own = films.planes.at[v];
-    if (std::count(own.begin(), own.end(), static_cast<int>(plane)) > 0) {
-      vertices.insert(static_cast<int>(v));
+/// The films' edges of which both ends and the middle are on a curve, or in a
+/// plane.
+std::map<std::string, Line> rims_of(const walls::WallFilms& films,
+                                    const SurfaceNodes& nodes) {
+  const std::vector<NamedPoints> names = named_points(films);
+  const std::map<int, std::vector<int>> at = rims_at(names);
+  const auto kept = [&](const std::vector<int>& rims, int v) {
+    std::vector<int> common;
+    if (const auto there = at.find(v); there != at.end()) {
+      std::set_intersection(rims.begin(), rims.end(), there->second.begin(),
+                            there->second.end(), std::back_inserter(common));
+    }
+    return common;
+  };
+  const auto corners = static_cast<int>(nodes.corner.size());
+  std::map<std::string, Line> rims;
+  std::set<std::array<int, 3>> taken;  // of a film, a rim and an edge
+  for (std::size_t f = 0; f < nodes.mesh.facets.size(); ++f) {
+    const int label = nodes.mesh.facet_label[f];
+    for (int k = 0; k < 3; ++k) {
+      const int a = nodes.mesh.facets[f][k];
+      const int b = nodes.mesh.facets[f][(k + 1) % 3];
+      const int edge = nodes.facet_edges[f][k];
+      const auto first = at.find(nodes.corner[a]);
+      if (first == at.end()) {
+        continue;
+      }
+      for (const int n :
+           kept(kept(first->second, nodes.corner[b]), nodes.mid[edge])) {
+        if (taken.insert({label, n, edge}).second) {
+          rims[films.mesh.labels[label] + names[n].ending].push_back(
+              {a, b, corners + edge});
+        }
+      }
     }
   }
-  for (std::size_t label = 0; label < films.mesh.labels.size(); ++label) {
-    Line line = edges_on(nodes, static_cast<int>(label), vertices);
-    if (!line.empty()) {
-      rims[films.mesh.labels[label] + "/" + films.planes.planes[plane].rim] =
-          std::move(line);
-    }
-  }
+  return rims;
 }
 
 double offset_of(walls::WallSide side) {
@@ -141,14 +164,15 @@ ShellModel::ShellModel(const case_data::Case& input,
                                 entry.name));
   }
   rims_ = rims_of(films, nodes_);
-  for (std::size_t p = 0; p < films.planes.planes.size(); ++p) {
-    std::map<std::string, Line> ends;
-    add_ends(films, nodes_, p, ends);
-    for (auto& [name, line] : ends) {
-      planes_[name] = films.planes.planes[p].normal;
-      rims_[name] = std::move(line);
+  for (const walls::WallPlane& plane : films.planes.planes) {
+    for (const std::string& label : films.mesh.labels) {
+      const std::string end = label + "/" + plane.rim;
+      if (rims_.contains(end)) {
+        planes_[end] = plane.normal;
+      }
     }
   }
+  straighten_folded(nodes_, points);
 }
 
 double ShellModel::thickness_at(std::size_t shell, Numbers numbers,

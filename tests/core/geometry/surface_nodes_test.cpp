@@ -1,6 +1,9 @@
 #include "core/geometry/surface_nodes.h"
 
+#include <algorithm>
 #include <cmath>
+#include <random>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -119,6 +122,74 @@ TEST(SurfaceNodes, AreTransposed) {
                 kNodeRounding * static_cast<double>(nested.points.size()));
     EXPECT_THROW(nodes.transpose(mid, mid, nested.points.size()), MeshError);
   }
+}
+
+/// The least of the normal area, sampled all over each facet, over its mean.
+double least_sampled_area(const QuadraticSurface& surface, std::size_t facet) {
+  constexpr int kSteps = 12;
+  const Triangle& c = surface.base.facets[facet];
+  const Triangle& e = surface.facet_edges[facet];
+  const auto at = [&](double u, double v) -> Vec3 {
+    const double w = 1.0 - u - v;
+    return w * (2.0 * w - 1.0) * surface.base.points[c[0]] +
+           u * (2.0 * u - 1.0) * surface.base.points[c[1]] +
+           v * (2.0 * v - 1.0) * surface.base.points[c[2]] +
+           4.0 * w * u * surface.mid[e[0]] + 4.0 * u * v * surface.mid[e[1]] +
+           4.0 * v * w * surface.mid[e[2]];
+  };
+  constexpr double kStep = 1e-3;
+  const Vec3 flat =
+      (at(1.0, 0.0) - at(0.0, 0.0)).cross(at(0.0, 1.0) - at(0.0, 0.0));
+  double least = 1.0;
+  for (int i = 0; i <= kSteps; ++i) {
+    for (int j = 0; i + j <= kSteps; ++j) {
+      const double u = static_cast<double>(i) / kSteps;
+      const double v = static_cast<double>(j) / kSteps;
+      const Vec3 by_u = (at(u + kStep, v) - at(u - kStep, v)) / (2.0 * kStep);
+      const Vec3 by_v = (at(u, v + kStep) - at(u, v - kStep)) / (2.0 * kStep);
+      least = std::min(least, by_u.cross(by_v).dot(flat) / flat.squaredNorm());
+    }
+  }
+  return least;
+}
+
+TEST(StraightenFolded, LeavesNoFoldAndSoundFacetsAlone) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> shift(-1.0, 1.0);
+  int folded_before = 0;
+  for (const double size : {0.02, 0.15, 0.3}) {
+    NestedSurface nested = nested_surface(shapes::sphere(1.0, 2), 1);
+    const SurfaceNodes before = nested.nodes;
+    for (const int mid : before.mid) {
+      nested.points[mid] +=
+          size * Vec3(shift(random), shift(random), shift(random));
+    }
+    const QuadraticSurface curved = nested.surface();
+    const int count = straighten_folded(nested.nodes, nested.points);
+    const QuadraticSurface mended = nested.surface();
+    std::vector<char> straight(before.edges.size(), 0);
+    int straightened = 0;
+    for (std::size_t e = 0; e < straight.size(); ++e) {
+      straight[e] = nested.nodes.mid[e] < 0 ? 1 : 0;
+      straightened += straight[e];
+      EXPECT_TRUE(straight[e] != 0 || nested.nodes.mid[e] == before.mid[e]);
+    }
+    EXPECT_EQ(count, straightened);
+    std::vector<char> asked(straight.size(), 0);
+    for (std::size_t f = 0; f < before.mesh.facets.size(); ++f) {
+      folded_before += least_sampled_area(curved, f) <= 0.0 ? 1 : 0;
+      EXPECT_GT(least_sampled_area(mended, f), 0.0) << "facet " << f;
+      const Triangle& edges = before.facet_edges[f];
+      if (straight[edges[0]] + straight[edges[1]] + straight[edges[2]] == 3) {
+        asked[edges[0]] = asked[edges[1]] = asked[edges[2]] = 1;
+      }
+    }
+    EXPECT_EQ(asked, straight);  // none but those of facets that are now flat
+    if (size < 0.05) {
+      EXPECT_EQ(count, 0);
+    }
+  }
+  EXPECT_GT(folded_before, 100);
 }
 
 }  // namespace

@@ -1,0 +1,255 @@
+#include "fea/shell/shell_factor.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "core/math/partial_cholesky.h"
+#include "core/memory.h"
+#include "core/parallel_for.h"
+
+namespace meniscus::shell {
+
+namespace {
+
+/// Substructures that are condensed before their wholes are.
+constexpr int kLeavesAtOnce = 4;
+
+int levels_for(int unknowns, const ShellFactorOptions& options) {
+  int levels = 0;
+  while (levels < options.most_levels &&
+         unknowns > options.unknowns * (2 << levels)) {
+    ++levels;
+  }
+  return levels;
+}
+
+[[noreturn]] void throw_not_definite(int unknowns) {
+  throw SolverError(fmt::format(
+      "the stiffness matrix of a shell of {} unknowns is not positive "
+      "definite: facets are nearly without area, or thicknesses far apart",
+      unknowns));
+}
+
+}  // namespace
+
+/// A substructure's own equations.
+struct ShellFactor::Leaf {
+  std::vector<int> own;       // unknowns of the whole, as those of the factor
+  std::vector<int> boundary;  // that stand behind them
+  SparseMatrix coupling;      // rows: boundary, columns: own
+  SymmetricFactor factor;     // of both, the boundary's diagonal raised
+  VectorX raised;             // by this
+};
+
+/// A cut's.
+struct ShellFactor::Front {
+  std::vector<int> own;  // unknowns
+  std::vector<int> boundary;
+  Eigen::MatrixXd L;  // rows: own, boundary; columns: own
+};
+
+ShellFactor::ShellFactor(const ShellMesh& mesh, const ShellFreedom& freedom,
+                         MatrixOfFacet matrix,
+                         const ShellFactorOptions& options)
+    : mesh_(mesh),
+      freedom_(freedom),
+      matrix_(std::move(matrix)),
+      cut_(cut_shell(mesh, levels_for(freedom.unknowns(), options))),
+      kept_bytes_(options.kept_bytes < 0.0 ? 0.5 * available_memory()
+                                           : options.kept_bytes),
+      kept_(cut_.leaf_count()),
+      fronts_(cut_.parts.size()),
+      schur_(cut_.parts.size()) {
+  for (int first = 0; first < cut_.leaf_count(); first += kLeavesAtOnce) {
+    const int count = std::min(kLeavesAtOnce, cut_.leaf_count() - first);
+    condense_leaves(first, count);
+    // Wholes of which both halves are there, from below.
+    int last = cut_.part_of(first + count - 1);
+    for (int part = cut_.part_of(first) / 2; part > 0; part /= 2) {
+      last /= 2;
+      for (int whole = part; whole <= last; ++whole) {
+        if (schur_[2 * whole].size() > 0 && schur_[2 * whole + 1].size() > 0) {
+          condense_halves(whole);
+        }
+      }
+    }
+  }
+}
+
+ShellFactor::~ShellFactor() = default;
+
+std::vector<int> ShellFactor::unknowns_of(const std::vector<int>& nodes) const {
+  std::vector<int> unknowns;
+  for (const int node : nodes) {
+    for (int k = 0; k < freedom_.free_count(node); ++k) {
+      unknowns.push_back(freedom_.first_unknown(node) + k);
+    }
+  }
+  return unknowns;
+}
+
+ShellFactor::Leaf ShellFactor::factored(int leaf) const {
+  const Part& part = cut_.parts[cut_.part_of(leaf)];
+  const std::vector<int>& facets = cut_.facets[leaf];
+  std::vector<int> nodes = part.own;
+  nodes.insert(nodes.end(), part.boundary.begin(), part.boundary.end());
+  std::vector<int> local(mesh_.nodes.size(), -1);
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    local[nodes[i]] = static_cast<int>(i);
+  }
+  ShellMesh mesh;
+  mesh.nodes.resize(nodes.size());  // the assembly does not read places
+  for (const int facet : facets) {
+    std::array<int, 6> own{};
+    for (int k = 0; k < kNodes; ++k) {
+      own[k] = local[mesh_.facets[facet][k]];
+    }
+    mesh.facets.push_back(own);
+  }
+  const ShellFreedom freedom = freedom_.of(nodes);
+  const ShellAssembly assembly(mesh, freedom);
+  SparseMatrix K =
+      assembly.sum([&](int facet) { return matrix_(facets[facet]); });
+  const std::vector<int> own = unknowns_of(part.own);
+  const std::vector<int> boundary = unknowns_of(part.boundary);
+  const auto inside = static_cast<int>(own.size());
+  const auto outside = static_cast<int>(boundary.size());
+  SparseMatrix coupling = K.block(inside, 0, outside, inside);
+  const VectorX raised = K.diagonal().tail(outside);
+  for (int k = 0; k < outside; ++k) {
+    K.coeffRef(inside + k, inside + k) += raised[k];
+  }
+  SymmetricFactor factor(
+      K, FactorKind::Cholesky,
+      assembly.elimination_order(static_cast<int>(part.boundary.size())));
+  if (!factor.factorize(K)) {
+    throw_not_definite(freedom_.unknowns());
+  }
+  return {own, boundary, std::move(coupling), std::move(factor), raised};
+}
+
+const ShellFactor::Leaf& ShellFactor::leaf_of(
+    int leaf, std::unique_ptr<Leaf>& made) const {
+  if (kept_[leaf]) {
+    return *kept_[leaf];
+  }
+  made = std::make_unique<Leaf>(factored(leaf));
+  return *made;
+}
+
+void ShellFactor::condense_leaves(int first, int count) {
+  std::vector<std::unique_ptr<Leaf>> leaves(count);
+  const double each = kept_bytes_ / cut_.leaf_count();
+  parallel_for(count, [&](std::ptrdiff_t k) {
+    const int leaf = first + static_cast<int>(k);
+    auto own = std::make_unique<Leaf>(factored(leaf));
+    const auto outside = static_cast<int>(own->boundary.size());
+    Eigen::MatrixXd& S = schur_[cut_.part_of(leaf)];
+    if (cut_.levels > 0) {
+      S = own->factor.schur_complement(outside);
+      S.diagonal() -= own->raised;
+    }
+    constexpr double kNumber = sizeof(double);
+    if (cut_.levels == 0 ||
+        kNumber * static_cast<double>(own->factor.entries()) < each) {
+      kept_[leaf] = std::move(own);
+    }
+  });
+}
+
+void ShellFactor::condense_halves(int part) {
+  Front& front = fronts_[part];
+  front.own = unknowns_of(cut_.parts[part].own);
+  front.boundary = unknowns_of(cut_.parts[part].boundary);
+  std::vector<int> place(freedom_.unknowns(), -1);
+  int next = 0;
+  for (const auto& list : {front.own, front.boundary}) {
+    for (const int unknown : list) {
+      place[unknown] = next++;
+    }
+  }
+  Eigen::MatrixXd F = Eigen::MatrixXd::Zero(next, next);
+  for (const int half : {2 * part, 2 * part + 1}) {
+    const std::vector<int> at = unknowns_of(cut_.parts[half].boundary);
+    for (std::size_t c = 0; c < at.size(); ++c) {
+      for (std::size_t r = 0; r < at.size(); ++r) {
+        F(place[at[r]], place[at[c]]) += schur_[half](r, c);
+      }
+    }
+    schur_[half] = {};
+  }
+  const auto own = static_cast<int>(front.own.size());
+  if (!eliminate_leading(F, own)) {
+    throw_not_definite(freedom_.unknowns());
+  }
+  front.L = F.leftCols(own);
+  const Eigen::Index left = next - own;
+  schur_[part] =
+      F.bottomRightCorner(left, left).selfadjointView<Eigen::Lower>();
+}
+
+Eigen::MatrixXd ShellFactor::solve(const Eigen::MatrixXd& right) const {
+  if (right.rows() != freedom_.unknowns()) {
+    throw SolverError(
+        fmt::format("solve: right side has {} rows, the shell {} unknowns",
+                    right.rows(), freedom_.unknowns()));
+  }
+  if (cut_.levels == 0) {
+    return kept_.front()->factor.solve(right);
+  }
+  const auto rows = [](const Eigen::MatrixXd& all, const std::vector<int>& own,
+                       const std::vector<int>& boundary) {
+    Eigen::MatrixXd b(own.size() + boundary.size(), all.cols());
+    b << all(own, Eigen::all), all(boundary, Eigen::all);
+    return b;
+  };
+  const int leaves = cut_.leaf_count();
+  Eigen::MatrixXd x = right;
+  std::vector<Eigen::MatrixXd> passed(leaves);
+  parallel_for(leaves, [&](std::ptrdiff_t k) {
+    std::unique_ptr<Leaf> made;
+    const Leaf& leaf = leaf_of(static_cast<int>(k), made);
+    const Eigen::MatrixXd z =
+        leaf.factor
+            .solve_leading(rows(right, leaf.own, leaf.boundary),
+                           static_cast<int>(leaf.boundary.size()))
+            .topRows(leaf.own.size());
+    passed[k] = leaf.coupling * z;
+    x(leaf.own, Eigen::all) = z;  // each its own rows
+  });
+  for (int k = 0; k < leaves; ++k) {
+    x(unknowns_of(cut_.parts[cut_.part_of(k)].boundary), Eigen::all) -=
+        passed[k];
+  }
+  for (int part = leaves - 1; part > 0; --part) {
+    const Front& front = fronts_[part];
+    Eigen::MatrixXd b = rows(x, front.own, front.boundary);
+    solve_leading_lower(front.L, b);
+    x(front.own, Eigen::all) = b.topRows(front.own.size());
+    x(front.boundary, Eigen::all) = b.bottomRows(front.boundary.size());
+  }
+  for (int part = 1; part < leaves; ++part) {
+    const Front& front = fronts_[part];
+    Eigen::MatrixXd b = rows(x, front.own, front.boundary);
+    solve_leading_upper(front.L, b);
+    x(front.own, Eigen::all) = b.topRows(front.own.size());
+  }
+  parallel_for(leaves, [&](std::ptrdiff_t k) {
+    std::unique_ptr<Leaf> made;
+    const Leaf& leaf = leaf_of(static_cast<int>(k), made);
+    Eigen::MatrixXd b =
+        Eigen::MatrixXd::Zero(leaf.own.size() + leaf.boundary.size(), x.cols());
+    b.topRows(leaf.own.size()) =
+        leaf.coupling.transpose() * x(leaf.boundary, Eigen::all);
+    x(leaf.own, Eigen::all) -=
+        leaf.factor.solve_leading(b, static_cast<int>(leaf.boundary.size()))
+            .topRows(leaf.own.size());
+  });
+  return x;
+}
+
+}  // namespace meniscus::shell

@@ -1,0 +1,60 @@
+/// K^-1 of a shell, of as many unknowns as memory has room for.
+///
+/// Substructures are condensed onto the cuts between them, these onto the next
+/// ones, up to the whole (static condensation: Guyan 1965; multifrontal:
+/// Duff and Reid 1983): dense fronts for the cuts, sparse factors within. The
+/// latter take most of the memory; those for which there is none are made
+/// again for each solution.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/math/linear_solve.h"
+#include "fea/shell/shell_assembly.h"
+#include "fea/shell/substructures.h"
+
+namespace meniscus::shell {
+
+struct ShellFactorOptions {
+  /// Unknowns of a substructure, about; below twice of it there is one.
+  int unknowns = 60000;
+  /// Halvings at most: more of them take less memory within, and more for the
+  /// cuts.
+  int most_levels = 4;
+  /// That substructures' factors may keep [byte]; below 0: half of what the
+  /// machine has left. The results do not depend on it.
+  double kept_bytes = -1.0;
+};
+
+class ShellFactor {
+ public:
+  /// Keeps references, and `matrix`, of one facet, symmetric. Throws
+  /// SolverError where the sum is not positive definite, or memory runs out.
+  ShellFactor(const ShellMesh& mesh, const ShellFreedom& freedom,
+              MatrixOfFacet matrix, const ShellFactorOptions& options = {});
+  ~ShellFactor();
+
+  /// One or several columns of free unknowns.
+  Eigen::MatrixXd solve(const Eigen::MatrixXd& right) const;
+
+ private:
+  struct Leaf;
+  struct Front;
+  Leaf factored(int leaf) const;
+  const Leaf& leaf_of(int leaf, std::unique_ptr<Leaf>& made) const;
+  void condense_leaves(int first, int count);
+  void condense_halves(int part);
+  std::vector<int> unknowns_of(const std::vector<int>& nodes) const;
+
+  const ShellMesh& mesh_;
+  const ShellFreedom& freedom_;
+  MatrixOfFacet matrix_;
+  Substructures cut_;
+  double kept_bytes_ = 0.0;
+  std::vector<std::unique_ptr<Leaf>> kept_;
+  std::vector<Front> fronts_;           // by part
+  std::vector<Eigen::MatrixXd> schur_;  // by part, until its whole has it
+};
+
+}  // namespace meniscus::shell

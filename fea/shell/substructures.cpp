@@ -1,0 +1,91 @@
+#include "fea/shell/substructures.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "core/math/linear_solve.h"
+#include "fea/shell/facet_rule.h"
+
+namespace meniscus::shell {
+
+namespace {
+
+constexpr int kEdges = 3;
+
+/// Facets that share a middle share an edge; one list after the other.
+struct FacetGraph {
+  std::vector<int> start;
+  std::vector<int> neighbors;
+};
+
+FacetGraph facet_graph(const ShellMesh& mesh) {
+  std::vector<std::vector<int>> at_middle(mesh.nodes.size());
+  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+    for (int k = 0; k < kEdges; ++k) {
+      at_middle[mesh.facets[f][kEdges + k]].push_back(static_cast<int>(f));
+    }
+  }
+  FacetGraph graph;
+  graph.start.push_back(0);
+  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+    for (int k = 0; k < kEdges; ++k) {
+      for (const int other : at_middle[mesh.facets[f][kEdges + k]]) {
+        if (other != static_cast<int>(f)) {
+          graph.neighbors.push_back(other);
+        }
+      }
+    }
+    graph.start.push_back(static_cast<int>(graph.neighbors.size()));
+  }
+  return graph;
+}
+
+/// The least part that both are in.
+int common_part(int a, int b) {
+  while (a != b) {
+    (a > b ? a : b) /= 2;
+  }
+  return a;
+}
+
+}  // namespace
+
+Substructures cut_shell(const ShellMesh& mesh, int levels) {
+  Substructures cut;
+  cut.levels = levels;
+  cut.parts.resize(2UL << levels);
+  cut.facets.resize(1UL << levels);
+  const FacetGraph graph = facet_graph(mesh);
+  const std::vector<int> leaf =
+      bisected_graph(graph.start, graph.neighbors, levels);
+  std::vector<int> home(mesh.nodes.size(), 0);
+  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+    cut.facets[leaf[f]].push_back(static_cast<int>(f));
+    for (const int node : mesh.facets[f]) {
+      const int part = cut.part_of(leaf[f]);
+      home[node] = home[node] == 0 ? part : common_part(home[node], part);
+    }
+  }
+  // Each node is on the boundary of the parts from its leaves up to its home.
+  std::vector<std::vector<int>> within(mesh.nodes.size());
+  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+    for (const int node : mesh.facets[f]) {
+      for (int part = cut.part_of(leaf[f]); part != home[node]; part /= 2) {
+        within[node].push_back(part);
+      }
+    }
+  }
+  for (std::size_t node = 0; node < home.size(); ++node) {
+    cut.parts[home[node]].own.push_back(static_cast<int>(node));
+    std::sort(within[node].begin(), within[node].end());
+    within[node].erase(std::unique(within[node].begin(), within[node].end()),
+                       within[node].end());
+    for (const int part : within[node]) {
+      cut.parts[part].boundary.push_back(static_cast<int>(node));
+    }
+  }
+  return cut;
+}
+
+}  // namespace meniscus::shell
