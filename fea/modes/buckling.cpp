@@ -50,9 +50,11 @@ solver::NodalMatrix weakening(const TetMesh& mesh,
                                      stress);
 }
 
-/// All but the shapes.
-BucklingModes judged(const EigenPairs& pairs, const BucklingOptions& options,
-                     const std::string& load_case) {
+}  // namespace
+
+BucklingModes factors_of(const EigenPairs& pairs,
+                         const BucklingOptions& options,
+                         const std::string& load_case) {
   const double floor = 1.0 / options.largest;
   BucklingModes modes;
   modes.iterations = pairs.iterations;
@@ -76,8 +78,6 @@ BucklingModes judged(const EigenPairs& pairs, const BucklingOptions& options,
   return modes;
 }
 
-}  // namespace
-
 BucklingModes buckling_modes(const elastic::ElasticModel& model,
                              const TetMesh& mesh,
                              const std::vector<loads::LoadCase>& load_cases,
@@ -99,7 +99,7 @@ BucklingModes buckling_modes(const elastic::ElasticModel& model,
        .max_iterations = options.max_iterations,
        .monitor = options.monitor},
       options.may_factor);
-  BucklingModes modes = judged(pairs, options, loads.name);
+  BucklingModes modes = factors_of(pairs, options, loads.name);
   for (std::size_t k = 0; k < modes.factors.size(); ++k) {
     const VectorX x = equations::to_mesh(
         *op.order, pairs.x.col(static_cast<Eigen::Index>(k)));

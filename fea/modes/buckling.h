@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "core/monitor.h"
 #include "fea/elastic/elasticity.h"
+#include "fea/modes/eigenpairs.h"
 
 namespace meniscus::modes {
 
@@ -49,6 +50,12 @@ struct BucklingModes {
   /// No convergence; what there is, is kept.
   std::optional<Failure> failure;
 };
+
+/// What the pairs of -K_g against K say, all but the shapes. `load_case`: its
+/// name, for messages.
+BucklingModes factors_of(const EigenPairs& pairs,
+                         const BucklingOptions& options,
+                         const std::string& load_case);
 
 /// `displacement`: the solution of load case `load_case` (index) on `mesh`.
 /// Throws what ElasticModel::operator_at() throws, and InvalidInput for sizes

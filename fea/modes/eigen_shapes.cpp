@@ -5,12 +5,77 @@
 
 #include <fmt/format.h>
 
+#include "fea/modes/pin_space.h"
+#include "fea/solver/multi_vector.h"
+
 namespace meniscus::modes {
 
 namespace {
 
 /// Iterations after which a factor is quicker.
 constexpr int kSlow = 60;
+
+Eigen::Index free_directions(const equations::ElasticOperator& op,
+                             const PinSpace& space) {
+  double free = 3.0 * op.table->pattern.nodes;
+  for (const Mat3& P : op.freedom.projector) {
+    free -= 3.0 - P.trace();
+  }
+  return std::lround(free) + space.motions();
+}
+
+/// By blocks of nodes, on the directions that supports and pins leave.
+class ElasticProducts {
+ public:
+  ElasticProducts(const equations::ElasticOperator& op, const PinSpace& space)
+      : op_(op), space_(space), products_(op.table->pattern, space.freedom()) {}
+
+  /// Must not outlive this and what it is given.
+  EigenProblem problem(const solver::NodalMatrix& A,
+                       const solver::Preconditioner& preconditioner) {
+    return {.rows = 3L * op_.table->pattern.nodes,
+            .dimension = free_directions(op_, space_),
+            .K = product(op_.K),
+            .A = product(A),
+            .preconditioner =
+                [this, &preconditioner](const solver::ColumnsIn& r,
+                                        const solver::ColumnsOut& z) {
+                  precondition(preconditioner, r, z);
+                },
+            .project =
+                [this](const solver::ColumnsOut& v) {
+                  solver::project(space_.freedom(), v);
+                  space_.project(v);
+                }};
+  }
+
+ private:
+  template <class Matrix>
+  ColumnOperator product(const Matrix& matrix) {
+    return [this, &matrix](const solver::ColumnsIn& x,
+                           const solver::ColumnsOut& y) {
+      products_.apply(matrix, x, y);
+      space_.project(y);
+    };
+  }
+
+  /// Of rigid pins apart: their motions, and the rest with them at rest.
+  void precondition(const solver::Preconditioner& preconditioner,
+                    const solver::ColumnsIn& r, const solver::ColumnsOut& z) {
+    if (!space_.has_pins()) {
+      products_.apply(preconditioner, r, z);
+      return;
+    }
+    solver::Columns rest = r;
+    space_.hold(rest);
+    products_.apply(preconditioner, rest, z);
+    space_.add_motions(r, z);
+  }
+
+  const equations::ElasticOperator& op_;
+  const PinSpace& space_;
+  solver::ColumnProducts products_;
+};
 
 }  // namespace
 
@@ -25,12 +90,13 @@ EigenPairs eigenpairs_of(const equations::ElasticOperator& op,
     first.max_iterations = std::min(options.max_iterations, kSlow);
   }
   const PinSpace space(op);
-  EigenPairs pairs = largest_eigenpairs(
-      {pattern, op.K, A, *op.preconditioner, op.freedom, space}, start, first);
+  ElasticProducts products(op, space);
+  EigenPairs pairs =
+      largest_eigenpairs(products.problem(A, *op.preconditioner), start, first);
   const bool slow = may_factor && pairs.end == EigenEnd::TooManyIterations;
   if (small && (slow || pairs.end == EigenEnd::NotPositive)) {
     const auto factor = solver::make_direct(pattern, op.K, op.freedom);
-    pairs = largest_eigenpairs({pattern, op.K, A, *factor, op.freedom, space},
+    pairs = largest_eigenpairs(products.problem(A, *factor),
                                slow ? pairs.x : start, options);
   }
   return pairs;

@@ -63,19 +63,13 @@ Basis orthonormal(const Eigen::MatrixXd& G) {
 class EigenSearch {
  public:
   EigenSearch(const EigenProblem& problem, const EigenOptions& options)
-      : problem_(problem),
-        options_(options),
-        rows_(3L * problem.pattern.nodes),
-        products_(problem.pattern, problem.space.freedom()) {}
+      : problem_(problem), options_(options), rows_(problem.rows) {}
 
   EigenPairs run(const solver::Columns& start);
 
  private:
   Eigen::Index block_size(Eigen::Index given) const;
-  void project(const solver::ColumnsOut& v) const;
-  void apply_a(const solver::ColumnsIn& x, const solver::ColumnsOut& y);
   void apply_both(Eigen::Index first, Eigen::Index count);
-  void precondition(const solver::ColumnsIn& r, const solver::ColumnsOut& z);
   void begin(const solver::Columns& start);
   bool improve(Eigen::Index lead);
   void measure();
@@ -96,7 +90,6 @@ class EigenSearch {
   const EigenProblem& problem_;
   const EigenOptions& options_;
   Eigen::Index rows_;
-  solver::ColumnProducts products_;
   Eigen::Index m_ = 0;  // columns of X
   Eigen::Index p_ = 0;  // of P
   Eigen::Index w_ = 0;  // of W
@@ -111,49 +104,18 @@ class EigenSearch {
 };
 
 Eigen::Index EigenSearch::block_size(Eigen::Index given) const {
-  double free = static_cast<double>(rows_);
-  for (const Mat3& P : problem_.freedom.projector) {
-    free -= 3.0 - P.trace();
-  }
-  free += static_cast<double>(problem_.space.motions());
   Eigen::Index block =
       std::max<Eigen::Index>(options_.count, given) + options_.guards;
   if (block > solver::kMostColumns) {  // whole fours cost no more
     block = (block + solver::kMostColumns - 1) / solver::kMostColumns *
             solver::kMostColumns;
   }
-  return std::min<Eigen::Index>(block, std::lround(free));
-}
-
-void EigenSearch::project(const solver::ColumnsOut& v) const {
-  solver::project(problem_.space.freedom(), v);
-  problem_.space.project(v);
-}
-
-void EigenSearch::apply_a(const solver::ColumnsIn& x,
-                          const solver::ColumnsOut& y) {
-  products_.apply(problem_.A, x, y);
-  problem_.space.project(y);
+  return std::min<Eigen::Index>(block, problem_.dimension);
 }
 
 void EigenSearch::apply_both(Eigen::Index first, Eigen::Index count) {
-  products_.apply(problem_.K, S_.middleCols(first, count),
-                  KS_.middleCols(first, count));
-  problem_.space.project(KS_.middleCols(first, count));
-  apply_a(S_.middleCols(first, count), AS_.middleCols(first, count));
-}
-
-/// Of rigid pins apart: their motions, and the rest with them at rest.
-void EigenSearch::precondition(const solver::ColumnsIn& r,
-                               const solver::ColumnsOut& z) {
-  if (!problem_.space.has_pins()) {
-    products_.apply(problem_.preconditioner, r, z);
-    return;
-  }
-  solver::Columns rest = r;
-  problem_.space.hold(rest);
-  products_.apply(problem_.preconditioner, rest, z);
-  problem_.space.add_motions(r, z);
+  problem_.K(S_.middleCols(first, count), KS_.middleCols(first, count));
+  problem_.A(S_.middleCols(first, count), AS_.middleCols(first, count));
 }
 
 void EigenSearch::begin(const solver::Columns& start) {
@@ -168,14 +130,15 @@ void EigenSearch::begin(const solver::Columns& start) {
       X(i, k) = noise(static_cast<std::uint64_t>(k * rows_ + i));
     }
   }
-  project(X);
+  problem_.project(X);
   // One step of inverse iteration leaves little of the roughness.
-  apply_a(S_.middleCols(given, m_ - given), AS_.middleCols(given, m_ - given));
-  precondition(AS_.middleCols(given, m_ - given),
-               S_.middleCols(given, m_ - given));
+  problem_.A(S_.middleCols(given, m_ - given),
+             AS_.middleCols(given, m_ - given));
+  problem_.preconditioner(AS_.middleCols(given, m_ - given),
+                          S_.middleCols(given, m_ - given));
   if (given > 0) {
     S_.leftCols(given) = start.leftCols(given);
-    project(S_.leftCols(given));
+    problem_.project(S_.leftCols(given));
   }
   apply_both(0, m_);
 }
@@ -243,7 +206,7 @@ void EigenSearch::measure() {
       moving.push_back(k);
     }
   }
-  precondition(R.leftCols(w_), S_.middleCols(at, w_));
+  problem_.preconditioner(R.leftCols(w_), S_.middleCols(at, w_));
   const VectorX square =
       solver::gram(R.leftCols(w_), S_.middleCols(at, w_)).diagonal();
   residuals_.conservativeResize(m_);

@@ -3,21 +3,25 @@
 /// factors (A = -K_g, theta = 1 / lambda).
 #pragma once
 
+#include <functional>
+
 #include "core/monitor.h"
-#include "fea/modes/pin_space.h"
 #include "fea/solver/multi_vector.h"
 
 namespace meniscus::modes {
 
-/// `K` must be positive definite on the free directions, `preconditioner` an
-/// approximation of its inverse.
+/// y = a matrix times x, column by column, in the space that the modes are in;
+/// `x` is in it but for what a preconditioner is given.
+using ColumnOperator = std::function<void(const solver::ColumnsIn& x,
+                                          const solver::ColumnsOut& y)>;
+
+/// `K` must be positive definite on the space, `preconditioner` an
+/// approximation of its inverse there.
 struct EigenProblem {
-  const solver::BlockPattern& pattern;
-  const solver::BlockMatrix<double>& K;
-  const solver::NodalMatrix& A;
-  const solver::Preconditioner& preconditioner;
-  const solver::NodeFreedom& freedom;  // that the preconditioner is for
-  const PinSpace& space;               // that the modes are in
+  Eigen::Index rows = 0;       // of a vector
+  Eigen::Index dimension = 0;  // of the space that the modes are in
+  ColumnOperator K, A, preconditioner;
+  std::function<void(const solver::ColumnsOut& v)> project;  // onto the space
 };
 
 struct EigenOptions {

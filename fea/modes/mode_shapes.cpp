@@ -47,14 +47,22 @@ std::optional<std::size_t> same_mode(const TetMesh& mesh,
                                      const std::vector<double>& density,
                                      const std::vector<VectorX>& shapes,
                                      const VectorX& reference) {
-  const VectorX momentum = mass_times(mesh, density, reference);
+  return same_mode(
+      [&](const VectorX& x) { return mass_times(mesh, density, x); }, shapes,
+      reference);
+}
+
+std::optional<std::size_t> same_mode(
+    const std::function<VectorX(const VectorX& x)>& mass_times,
+    const std::vector<VectorX>& shapes, const VectorX& reference) {
+  const VectorX momentum = mass_times(reference);
   const double own = reference.dot(momentum);
   std::optional<std::size_t> most;
   double share = 0.5;
   for (std::size_t k = 0; k < shapes.size(); ++k) {
     const VectorX& x = shapes[k];
-    const double here = std::pow(x.dot(momentum), 2) /
-                        (x.dot(mass_times(mesh, density, x)) * own);
+    const double here =
+        std::pow(x.dot(momentum), 2) / (x.dot(mass_times(x)) * own);
     if (here > share) {
       share = here;
       most = k;

@@ -2,6 +2,7 @@
 /// what stress a part buckles in it.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -21,6 +22,11 @@ std::optional<std::size_t> same_mode(const TetMesh& mesh,
                                      const std::vector<double>& density,
                                      const std::vector<VectorX>& shapes,
                                      const VectorX& reference);
+
+/// The same with a product by M of any kind.
+std::optional<std::size_t> same_mode(
+    const std::function<VectorX(const VectorX& x)>& mass_times,
+    const std::vector<VectorX>& shapes, const VectorX& reference);
 
 /// Of the load case's own stresses, not yet times the factor: means over the
 /// places where they push the mode on, weighted by the work they do there, the

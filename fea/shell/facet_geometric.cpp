@@ -4,44 +4,111 @@
 
 #include <Eigen/Geometry>
 
+#include "fea/shell/facet_resultants.h"
+
 namespace meniscus::shell {
 
 namespace {
 
-/// Of a facet's numbers: columns as those of FacetMatrix.
-using VectorRows = Eigen::Matrix<double, 3, kUnknowns>;
-
-/// Derivatives of u and of theta x n along the frame's axes.
-struct MotionSlopes {
-  std::array<VectorRows, 2> moved;
-  std::array<VectorRows, 2> turned;
-};
-
-Mat3 crossed_with(const Vec3& n) {  // theta -> theta x n
+Mat3 cross_matrix(const Vec3& a) {  // b -> a x b
   Mat3 m;
-  m << 0.0, n[2], -n[1], -n[2], 0.0, n[0], n[1], -n[0], 0.0;
+  m << 0.0, -a[2], a[1], a[2], 0.0, -a[0], -a[1], a[0], 0.0;
   return m;
 }
 
-MotionSlopes motion_slopes(const FacetPoint& p,
-                           const FacetFrame<double>& frame) {
-  const Mat3 normal = crossed_with(as_vector(frame.axes[2]));
-  MotionSlopes slopes;
-  for (int k = 0; k < 2; ++k) {
-    const auto& g = frame.by_axis[k];
-    const Mat3 turning =
-        crossed_with(frame.curvature[k][0] * as_vector(frame.axes[0]) +
-                     frame.curvature[k][1] * as_vector(frame.axes[1]));
-    for (int i = 0; i < kNodes; ++i) {
-      const double slope = g[0] * p.slope(i, 0) + g[1] * p.slope(i, 1);
-      slopes.moved[k].middleCols<3>(6 * i) = slope * Mat3::Identity();
-      slopes.moved[k].middleCols<3>(6 * i + 3).setZero();
-      slopes.turned[k].middleCols<3>(6 * i).setZero();
-      slopes.turned[k].middleCols<3>(6 * i + 3) =
-          slope * normal + p.shape[i] * turning;
+/// The symmetric matrix of theta -> theta x (theta x n) . c.
+Mat3 second_turn(const Vec3& n, const Vec3& c) {
+  return 0.5 * (n * c.transpose() + c * n.transpose()) -
+         n.dot(c) * Mat3::Identity();
+}
+
+/// A point's resultants as coefficients of what nodes do there: slopes along
+/// the frame's axes, theta -> theta x n and its derivatives.
+struct TurnForms {
+  Mat3 normal;                  // theta -> theta x n
+  std::array<Mat3, 2> turning;  // by n's derivatives
+  std::array<Mat3, 2> slope;    // of u, with theta: shear and drilling
+  std::array<Mat3, 2> bend;     // of theta, with theta
+  Mat3 turned = Mat3::Zero();   // theta with itself
+};
+
+TurnForms turn_forms(const FacetFrame<double>& frame,
+                     const FacetResultants<double>& r) {
+  const std::array<Vec3, 3> t = {as_vector(frame.axes[0]),
+                                 as_vector(frame.axes[1]),
+                                 as_vector(frame.axes[2])};
+  const Vec3& n = t[2];
+  std::array<Vec3, 2> slope_of_n;
+  for (int a = 0; a < 2; ++a) {
+    slope_of_n[a] = frame.curvature[a][0] * t[0] + frame.curvature[a][1] * t[1];
+  }
+  TurnForms forms;
+  forms.normal = -cross_matrix(n);
+  for (int a = 0; a < 2; ++a) {
+    Vec3 moments = Vec3::Zero();
+    for (int b = 0; b < 2; ++b) {
+      moments += r.stress[1][a][b] * t[b] + r.stress[2][a][b] * slope_of_n[b];
+    }
+    forms.turning[a] = -cross_matrix(slope_of_n[a]);
+    const double side = a == 0 ? -1.0 : 1.0;
+    forms.slope[a] =
+        r.shear[a] * forms.normal + side * r.drilling * cross_matrix(t[1 - a]);
+    forms.bend[a] = second_turn(n, moments);
+    forms.turned += second_turn(slope_of_n[a], moments);
+  }
+  forms.turned += second_turn(
+      n, r.shear[0] * t[0] + r.shear[1] * t[1] - as_vector(r.lever));
+  return forms;
+}
+
+void add_point(const FacetPoint& p, const FacetFrame<double>& frame,
+               const FacetResultants<double>& r, FacetMatrix& K) {
+  const TurnForms forms = turn_forms(frame, r);
+  const double area = p.weight * frame.area;
+  const auto& g = frame.by_axis;
+  Eigen::Matrix<double, 2, kNodes> slope;  // along the axes
+  Eigen::Matrix<double, kNodes, kNodes> stretch =
+      Eigen::Matrix<double, kNodes, kNodes>::Zero();
+  for (int a = 0; a < 2; ++a) {
+    slope.row(a) =
+        (p.slope.topRows<kNodes>() * Eigen::Vector2d(g[a][0], g[a][1]))
+            .transpose();
+    for (int b = 0; b < 2; ++b) {
+      const double s = r.stress[0][a][b];
+      const Vec3 by_component(s * g[a][0] * g[b][0],
+                              s * (g[a][0] * g[b][1] + g[a][1] * g[b][0]),
+                              s * g[a][1] * g[b][1]);
+      for (int i = 0; i < kNodes; ++i) {
+        stretch.row(i) +=
+            by_component.transpose() * p.stretched.middleRows<3>(3 * i);
+      }
     }
   }
-  return slopes;
+  std::array<std::array<Mat3, 2>, kNodes> turned;  // derivatives of theta x n
+  for (int i = 0; i < kNodes; ++i) {
+    for (int a = 0; a < 2; ++a) {
+      turned[i][a] = slope(a, i) * forms.normal + p.shape[i] * forms.turning[a];
+    }
+  }
+  for (int i = 0; i < kNodes; ++i) {
+    for (int j = 0; j < kNodes; ++j) {
+      Mat3 mixed = Mat3::Zero();
+      Mat3 turns = p.shape[i] * p.shape[j] * forms.turned;
+      for (int a = 0; a < 2; ++a) {
+        mixed += slope(a, i) * p.shape[j] * forms.slope[a];
+        turns += (slope(a, i) * p.shape[j] + p.shape[i] * slope(a, j)) *
+                 forms.bend[a];
+        for (int b = 0; b < 2; ++b) {
+          mixed += r.stress[1][a][b] * slope(a, i) * turned[j][b];
+          turns += r.stress[2][a][b] * turned[i][a].transpose() * turned[j][b];
+        }
+      }
+      K.block<3, 3>(6 * i, 6 * j) += area * stretch(i, j) * Mat3::Identity();
+      K.block<3, 3>(6 * i, 6 * j + 3) += area * mixed;
+      K.block<3, 3>(6 * j + 3, 6 * i) += area * mixed.transpose();
+      K.block<3, 3>(6 * i + 3, 6 * j + 3) += area * turns;
+    }
+  }
 }
 
 }  // namespace
@@ -54,48 +121,14 @@ FacetMatrix facet_geometric(const Facet& facet, const ShellLoads& loads,
   const auto axes = bubble_axes(X);
   const Triple<double> bubble = plus(times(b[0], axes[0]), b[1], axes[1]);
   const FacetField field = Eigen::Map<const FacetField>(u.data());
-  const WallState state = wall_state(loads, own);
   FacetMatrix K = FacetMatrix::Zero();
   for (const FacetPoint& p : facet_rule()) {
     const FacetFrame<double> frame = facet_frame(X, p, facet.direction);
     const FacetStrain<double> strain = facet_strain(X, p, frame, field, bubble);
-    const double t = thickness_at(facet, p);
-    // Stress along the axes times powers 0, 1, 2 of zeta over the wall.
-    std::array<Eigen::Matrix2d, 3> S;
-    S.fill(Eigen::Matrix2d::Zero());
-    for (const LayerPoint& layer : facet.law->points) {
-      const double zeta = (layer.at + facet.offset) * t;
-      const Square<double> shift = shifter(frame.curvature, zeta);
-      const Square<double> back = inverse(shift);
-      const PlyLaw& ply = facet.law->plies[layer.ply];
-      const Vec3 stress =
-          ply.plane * (as_vector(layer_strain(strain, back, zeta).plane) -
-                       state.free_strain(ply, layer.at));
-      Eigen::Matrix2d here;
-      here << stress[0], stress[2], stress[2], stress[1];
-      Eigen::Matrix2d to_surface;
-      to_surface << back[0][0], back[0][1], back[1][0], back[1][1];
-      const Eigen::Matrix2d weighted = layer.weight * t * determinant(shift) *
-                                       to_surface.transpose() * here *
-                                       to_surface;
-      S[0] += weighted;
-      S[1] += zeta * weighted;
-      S[2] += zeta * zeta * weighted;
-    }
-    const MotionSlopes d = motion_slopes(p, frame);
-    const double area = p.weight * frame.area;
-    for (int i = 0; i < 2; ++i) {
-      for (int j = 0; j < 2; ++j) {
-        K.noalias() +=
-            area * S[0](i, j) * (d.moved[i].transpose() * d.moved[j]);
-        K.noalias() +=
-            area * S[1](i, j) * (d.moved[i].transpose() * d.turned[j]);
-        K.noalias() +=
-            area * S[1](i, j) * (d.turned[i].transpose() * d.moved[j]);
-        K.noalias() +=
-            area * S[2](i, j) * (d.turned[i].transpose() * d.turned[j]);
-      }
-    }
+    add_point(p, frame,
+              facet_resultants<double>(
+                  {facet, loads, own, frame, strain, thickness_at(facet, p)}),
+              K);
   }
   return K;
 }

@@ -6,11 +6,12 @@
 
 namespace meniscus::shell {
 
-/// x . K_g x is the integral over the wall of S_ij d_i U . d_j U, S the
-/// stresses in the surface under the displacements `u` (and free strains of the
-/// loads), U = x's displacement + zeta its rotation x n. Of what is of second
-/// order in a finite turn of the normal nothing: exact for walls that are
-/// stretched before they buckle, not bent. The bubble has none.
+/// x . K_g x is twice what the stresses under the displacements `u` (free
+/// strains of the loads taken out) do on the part of the strains that is of
+/// second order in x, its rotation vectors finite: normals turn to exp(theta)
+/// n, so that walls which meet at an angle turn alike. Less what pressures at
+/// the faces and weight do as normals turn: both keep their direction (spin
+/// acts on the surface). The bubble has none. docs/theory.md, Shells.
 FacetMatrix facet_geometric(const Facet& facet, const ShellLoads& loads,
                             const FacetLoad& own, const FacetVector& u);
 

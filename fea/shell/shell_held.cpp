@@ -38,48 +38,97 @@ std::string motion_text(const Eigen::Matrix<double, 6, 1>& motion) {
                      way[2]);
 }
 
-}  // namespace
+/// Facets that hang together.
+struct Piece {
+  std::vector<int> nodes;
+  Vec3 center = Vec3::Zero();
+  double size = 0.0;  // about the center
+};
 
-void check_held(const ShellMesh& mesh, const ShellFreedom& freedom) {
-  const int nodes = freedom.nodes();
-  UnionFind pieces(nodes);
+std::vector<Piece> pieces_of(const ShellMesh& mesh) {
+  const auto nodes = static_cast<int>(mesh.nodes.size());
+  UnionFind joined(nodes);
   for (const auto& facet : mesh.facets) {
     for (int k = 1; k < kNodes; ++k) {
-      pieces.join(facet[0], facet[k]);
+      joined.join(facet[0], facet[k]);
     }
   }
-  std::vector<std::vector<int>> members(nodes);
+  std::vector<Piece> all(mesh.nodes.size());
   for (int i = 0; i < nodes; ++i) {
-    members[pieces.root(i)].push_back(i);
+    all[joined.root(i)].nodes.push_back(i);
   }
-  for (const std::vector<int>& piece : members) {
-    if (piece.empty()) {
+  std::vector<Piece> pieces;
+  for (Piece& piece : all) {
+    if (piece.nodes.empty()) {
       continue;
     }
-    Vec3 center = Vec3::Zero();
-    for (const int i : piece) {
-      center += mesh.nodes[i] / static_cast<double>(piece.size());
+    const auto count = static_cast<double>(piece.nodes.size());
+    for (const int i : piece.nodes) {
+      piece.center += mesh.nodes[i] / count;
     }
-    double size = 0.0;
-    for (const int i : piece) {
-      size = std::max(size, (mesh.nodes[i] - center).norm());
+    for (const int i : piece.nodes) {
+      piece.size = std::max(piece.size, (mesh.nodes[i] - piece.center).norm());
     }
-    Matrix6 held = Matrix6::Zero();
-    for (const int i : piece) {
-      if (freedom.free_count(i) < 6) {
-        const auto Q = freedom.basis(i);
-        const Matrix6 R = rigid_motions(mesh.nodes[i] - center, size);
-        const Matrix6 P = Matrix6::Identity() - Q * Q.transpose();
-        held += R.transpose() * P * R;
+    pieces.push_back(std::move(piece));
+  }
+  return pieces;
+}
+
+/// Those of a piece's rigid motions, one a column, that supports leave it.
+Eigen::MatrixXd motions_left(const ShellMesh& mesh, const ShellFreedom& freedom,
+                             const Piece& piece) {
+  Matrix6 held = Matrix6::Zero();
+  for (const int i : piece.nodes) {
+    if (freedom.free_count(i) < 6) {
+      const auto Q = freedom.basis(i);
+      const Matrix6 R = rigid_motions(mesh.nodes[i] - piece.center, piece.size);
+      const Matrix6 P = Matrix6::Identity() - Q * Q.transpose();
+      held += R.transpose() * P * R;
+    }
+  }
+  const auto motions = symmetric_eigen(held);
+  Eigen::Index left = 0;
+  while (left < 6 && !(motions.values[left] > kHeld * motions.values[5])) {
+    ++left;
+  }
+  return motions.vectors.leftCols(left);
+}
+
+}  // namespace
+
+Eigen::MatrixXd free_motions(const ShellMesh& mesh,
+                             const ShellFreedom& freedom) {
+  std::vector<VectorX> columns;
+  for (const Piece& piece : pieces_of(mesh)) {
+    const Eigen::MatrixXd left = motions_left(mesh, freedom, piece);
+    for (Eigen::Index k = 0; k < left.cols(); ++k) {
+      VectorX six = VectorX::Zero(6L * freedom.nodes());
+      for (const int i : piece.nodes) {
+        six.segment<6>(6L * i) =
+            rigid_motions(mesh.nodes[i] - piece.center, piece.size) *
+            left.col(k);
+        six.segment<3>(6L * i + 3) /= piece.size;
       }
+      columns.push_back(freedom.restrict(six));
     }
-    const auto motions = symmetric_eigen(held);
-    if (!(motions.values[0] > kHeld * motions.values[5])) {
+  }
+  Eigen::MatrixXd motions(freedom.unknowns(),
+                          static_cast<Eigen::Index>(columns.size()));
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    motions.col(static_cast<Eigen::Index>(k)) = columns[k];
+  }
+  return motions;
+}
+
+void check_held(const ShellMesh& mesh, const ShellFreedom& freedom) {
+  for (const Piece& piece : pieces_of(mesh)) {
+    const Eigen::MatrixXd left = motions_left(mesh, freedom, piece);
+    if (left.cols() > 0) {
       throw SolverError(fmt::format(
           "a shell of {} nodes around ({:.6g}, {:.6g}, {:.6g}) is free to {}; "
           "hold more of it",
-          piece.size(), center[0], center[1], center[2],
-          motion_text(motions.vectors.col(0))));
+          piece.nodes.size(), piece.center[0], piece.center[1], piece.center[2],
+          motion_text(left.col(0))));
     }
   }
 }

@@ -6,9 +6,13 @@
 
 namespace meniscus::shell {
 
-/// Throws SolverError, naming a place and the motion, where facets that hang
-/// together can move or turn rigidly. A factor may not notice: rounding leaves
-/// pivots that are positive.
+/// The rigid motions that facets which hang together are free to make, one a
+/// column, on the unknowns.
+Eigen::MatrixXd free_motions(const ShellMesh& mesh,
+                             const ShellFreedom& freedom);
+
+/// Throws SolverError, naming a place and the motion, where there are any. A
+/// factor may not notice: rounding leaves pivots that are positive.
 void check_held(const ShellMesh& mesh, const ShellFreedom& freedom);
 
 }  // namespace meniscus::shell

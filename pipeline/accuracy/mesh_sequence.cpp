@@ -40,8 +40,9 @@ void add_mesh(const case_data::Case& input, const VectorX& design,
     forward::find_stresses(input, fields);
     meshes.peaks[m] = forward::highest_readings(fields);
     if (with_eigen) {
-      meshes.eigen[m] =
-          forward::eigen_figures(input, fields, model.elasticity(), &monitor);
+      meshes.eigen[m] = forward::eigen_figures(
+          input, fields, fields.shell ? nullptr : &model.elasticity(),
+          &monitor);
       meshes.seconds.fea += meshes.eigen[m].seconds;
     }
   });

@@ -834,6 +834,13 @@ void add_sides(const Case& input, const FilmEntry& film,
   }
 }
 
+void add_ends(const Case& input, std::vector<std::string>& names) {
+  for (std::size_t p = 0; p < input.symmetry.size(); ++p) {
+    const auto ends = wall_ends(input, static_cast<int>(p));
+    names.insert(names.end(), ends.begin(), ends.end());
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> shell_surface_names(const Case& input) {
@@ -846,6 +853,7 @@ std::vector<std::string> shell_surface_names(const Case& input) {
       }
     }
   }
+  add_ends(input, names);
   return names;
 }
 
@@ -872,10 +880,7 @@ std::vector<std::string> wall_surface_names(const Case& input) {
       }
     }
   }
-  for (std::size_t p = 0; p < input.symmetry.size(); ++p) {
-    const auto ends = wall_ends(input, static_cast<int>(p));
-    names.insert(names.end(), ends.begin(), ends.end());
-  }
+  add_ends(input, names);
   return names;
 }
 

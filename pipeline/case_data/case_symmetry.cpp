@@ -166,9 +166,11 @@ std::vector<std::string> wall_ends(const Case& input, int plane) {
   std::vector<std::string> result;
   for (const std::string& film :
        input.symmetry[static_cast<std::size_t>(plane)].films) {
-    if (std::any_of(
-            input.walls.begin(), input.walls.end(),
-            [&](const WallEntry& wall) { return names(wall.films, film); })) {
+    const auto has = [&](const auto& entry) {
+      return names(entry.films, film);
+    };
+    if (std::any_of(input.walls.begin(), input.walls.end(), has) ||
+        std::any_of(input.shells.begin(), input.shells.end(), has)) {
       result.push_back(wall_end(film, plane));
     }
   }
@@ -339,26 +341,33 @@ std::vector<std::string> held_faces(const Case& input) {
 }
 
 /// A wall's end at a curve that a solid closes in the plane would not lie in
-/// it.
+/// it, nor a shell's normal.
 void refuse_held_walls(const Case& input, CaseProblems& problems) {
   for (const CapEntry& cap : input.caps) {
     if (cap.symmetry < 0 || cap.wetted) {
       continue;
     }
     const std::vector<std::string> rims = cap.spec.curves();
-    for (const WallEntry& wall : input.walls) {
-      const std::vector<std::string> curves = curves_of_wall(input, wall);
+    const auto refuse = [&](const char* kind, const auto& entry) {
+      const std::vector<std::string> curves =
+          curves_of_wall(input, {.films = entry.films});
       if (std::any_of(rims.begin(), rims.end(), [&](const std::string& rim) {
             return names(curves, rim);
           })) {
         problems.add(
-            wall.line,
-            fmt::format("walls.{} is of a film that solid '{}' holds in plane "
+            entry.line,
+            fmt::format("{}.{} is of a film that solid '{}' holds in plane "
                         "{} of symmetry; take '{}' out, so that the film "
                         "slides there, or draw the whole",
-                        wall.name, cap.spec.name, cap.symmetry + 1,
+                        kind, entry.name, cap.spec.name, cap.symmetry + 1,
                         cap.spec.name));
       }
+    };
+    for (const WallEntry& wall : input.walls) {
+      refuse("walls", wall);
+    }
+    for (const ShellEntry& shell : input.shells) {
+      refuse("shells", shell);
     }
   }
 }

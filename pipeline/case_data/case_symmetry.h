@@ -35,10 +35,11 @@ void apply_symmetry(Case& input, CaseProblems& problems);
 void check_symmetry(const Case& input, const EvaluatedCase& inputs,
                     const CaseValues& values);
 
-/// What the end of a film's wall in a plane is called: "web/symmetry_1".
+/// What the end of a film's wall or shell in a plane is called:
+/// "web/symmetry_1".
 std::string wall_end(const std::string& film, int plane);
 
-/// Those of the walls whose films slide on a plane.
+/// Those of the walls and shells whose films slide on a plane.
 std::vector<std::string> wall_ends(const Case& input, int plane);
 
 /// The names of the cut faces, in the order of the solids, then those of the

@@ -19,18 +19,17 @@ namespace {
 /// As many as the responses take.
 std::optional<Failure> find_modes(const FrozenPart& part,
                                   StagedDesign& staged) {
-  if (part.shells) {
-    return std::nullopt;  // none takes any
-  }
   const StageMeter meter;
   responses::ResponseModes& modes = staged.fields.response_modes;
-  modes = responses::find_response_modes({.input = part.input,
-                                          .inputs = staged.fields.inputs,
-                                          .mesh = staged.fields.mesh,
-                                          .solution = staged.fields.solution,
-                                          .model = *part.elasticity,
-                                          .base = &part.base_modes,
-                                          .monitor = part.monitor});
+  modes = responses::find_response_modes(
+      {.input = part.input,
+       .inputs = staged.fields.inputs,
+       .mesh = staged.fields.mesh,
+       .solution = staged.fields.solution,
+       .model = part.elasticity ? &*part.elasticity : nullptr,
+       .shell = staged.fields.shell.get(),
+       .base = &part.base_modes,
+       .monitor = part.monitor});
   meter.add_to(staged.evaluation.seconds.fea, staged.evaluation.operations.fea);
   return modes.failure;
 }

@@ -8,7 +8,9 @@
 #include <nlohmann/json.hpp>
 
 #include "core/timer.h"
+#include "fea/shell/shell_mode_stress.h"
 #include "pipeline/forward/worst_cases.h"
+#include "pipeline/shells/shell_eigen.h"
 
 namespace meniscus::forward {
 
@@ -62,58 +64,74 @@ Modes or_failure(const Solve& solve) {
 FrequencyFigures frequencies_of(const case_data::AnalysisEntry& analysis,
                                 const EvaluationFields& fields,
                                 const std::vector<loads::LoadCase>& cases,
-                                const elastic::ElasticModel& model,
+                                const elastic::ElasticModel* model,
                                 Monitor* monitor) {
   const modes::ModeOptions options{.count = analysis.frequencies,
                                    .monitor = monitor,
                                    .materials = &fields.inputs.materials};
   const int held = analysis.supports_of;
-  if (held == case_data::AnalysisEntry::kFree) {
-    return {"free", or_failure<modes::NaturalModes>([&] {
-              return modes::natural_modes(fields.mesh, fields.inputs.materials,
-                                          loads::LoadCase{.name = "free"},
-                                          options);
-            })};
-  }
-  return {cases[static_cast<std::size_t>(held)].name,
+  const bool is_free = held == case_data::AnalysisEntry::kFree;
+  return {is_free ? "free" : cases[static_cast<std::size_t>(held)].name,
           or_failure<modes::NaturalModes>([&] {
-            return modes::natural_modes(model, fields.mesh, cases, held,
-                                        options);
+            if (fields.shell) {
+              return shells::natural_modes(*fields.shell, held, options);
+            }
+            return is_free ? modes::natural_modes(
+                                 fields.mesh, fields.inputs.materials,
+                                 loads::LoadCase{.name = "free"}, options)
+                           : modes::natural_modes(*model, fields.mesh, cases,
+                                                  held, options);
           })};
 }
 
 /// The factors of a load case, and the stress that each is of.
 modes::BucklingFigures buckling_of(const EvaluationFields& fields,
                                    const std::vector<loads::LoadCase>& cases,
-                                   const elastic::ElasticModel& model,
+                                   const elastic::ElasticModel* model,
                                    std::size_t c,
                                    const modes::BucklingOptions& options) {
   const VectorX& u = fields.solution.displacements[c];
-  modes::BucklingFigures figures{.load_case = cases[c].name,
-                                 .modes = or_failure<modes::BucklingModes>([&] {
-                                   return modes::buckling_modes(
-                                       model, fields.mesh, cases,
-                                       static_cast<int>(c), u, options);
-                                 })};
+  modes::BucklingFigures figures{
+      .load_case = cases[c].name,
+      .modes = or_failure<modes::BucklingModes>([&] {
+        return fields.shell
+                   ? shells::buckling_modes(*fields.shell, c, cases[c].name,
+                                            options)
+                   : modes::buckling_modes(*model, fields.mesh, cases,
+                                           static_cast<int>(c), u, options);
+      })};
   for (const VectorX& shape : figures.modes.shapes) {
-    figures.stresses.push_back(modes::mode_stress(
-        fields.mesh, fields.inputs.materials, cases[c], u, shape));
+    figures.stresses.push_back(stress_in_mode(fields, c, shape));
   }
   return figures;
 }
 
 }  // namespace
 
+modes::ModeStress stress_in_mode(const EvaluationFields& fields, std::size_t c,
+                                 const VectorX& shape) {
+  if (fields.shell) {
+    const shells::ShellCase& own = fields.shell->cases[c];
+    return shell::mode_stress(fields.shell->mesh, fields.shell->sections,
+                              own.actions.loads, own.displacement, shape);
+  }
+  return modes::mode_stress(fields.mesh, fields.inputs.materials,
+                            fields.inputs.load_cases[c],
+                            fields.solution.displacements[c], shape);
+}
+
 EigenFigures eigen_figures(const case_data::Case& input,
                            const EvaluationFields& fields,
-                           const elastic::ElasticModel& model,
+                           const elastic::ElasticModel* model,
                            Monitor* monitor) {
   const Timer timer;
   const case_data::AnalysisEntry& analysis = input.analysis;
   const std::vector<loads::LoadCase> cases = solved_load_cases(fields);
   EigenFigures figures;
-  modes::BucklingOptions options =
-      buckling_options(analysis, model.base_solution().report, monitor);
+  modes::BucklingOptions options = buckling_options(
+      analysis,
+      fields.shell ? fields.solution.report : model->base_solution().report,
+      monitor);
   options.materials = &fields.inputs.materials;
   for (std::size_t c = 0; c < cases.size() && options.count > 0; ++c) {
     if (is_unit_load(fields, c) && !analysis.buckling) {
@@ -229,12 +247,15 @@ std::string eigen_text(const EigenFigures& figures) {
 std::vector<ModeShape> mode_shapes(const case_data::Case& input,
                                    const EigenFigures& figures) {
   std::vector<ModeShape> shapes;
+  const auto moved = [&](const VectorX& shape) {
+    return input.shells.empty() ? shape : shells::displacements_of(shape);
+  };
   if (figures.frequencies) {
     const modes::NaturalModes& modes = figures.frequencies->modes;
     for (std::size_t k = 0; k < modes.shapes.size(); ++k) {
       shapes.push_back({fmt::format("mode_{}", k + 1),
                         fmt::format("{:.8g} Hz", modes.frequencies[k]),
-                        modes.shapes[k]});
+                        moved(modes.shapes[k])});
     }
   }
   if (!input.analysis.buckling) {
@@ -244,7 +265,7 @@ std::vector<ModeShape> mode_shapes(const case_data::Case& input,
     for (std::size_t k = 0; k < b.modes.shapes.size(); ++k) {
       shapes.push_back({fmt::format("buckling_{}_{}", b.load_case, k + 1),
                         fmt::format("factor {:.8g}", b.modes.factors[k]),
-                        b.modes.shapes[k]});
+                        moved(b.modes.shapes[k])});
     }
   }
   return shapes;

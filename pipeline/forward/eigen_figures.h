@@ -29,12 +29,16 @@ struct EigenFigures {
 /// What the case's [analysis] asks for; without it the first buckling factor of
 /// every load case up to 1000, to three digits, or a remark where the solver
 /// keeps its matrix in other processes or loads come from any direction.
-/// `model` must know the fields' mesh. An answer that did not come is a failure
-/// within. Throws Interrupted.
+/// `model` must know the fields' mesh; of shells it is not read, and null. An
+/// answer that did not come is a failure within. Throws Interrupted.
 EigenFigures eigen_figures(const case_data::Case& input,
                            const EvaluationFields& fields,
-                           const elastic::ElasticModel& model,
+                           const elastic::ElasticModel* model,
                            Monitor* monitor = nullptr);
+
+/// Of a mode of buckling of load case `c`: 3 numbers per node, of shells 6.
+modes::ModeStress stress_in_mode(const EvaluationFields& fields, std::size_t c,
+                                 const VectorX& shape);
 
 /// Whether other meshes have something to say: of what was asked for, and of
 /// factors that matter.

@@ -207,11 +207,35 @@ bool freeze_modes(const case_data::EvaluatedCase& inputs, Monitor& monitor,
        .inputs = inputs,
        .mesh = part.base_mesh,
        .solution = part.elasticity->base_solution(),
-       .model = *part.elasticity,
+       .model = &*part.elasticity,
        .monitor = &monitor});
   meter.add_to(part.start.seconds.fea, part.start.operations.fea);
   part.start.failure = part.base_modes.failure;
   return !part.start.failure;
+}
+
+/// Of shells likewise, whose equations nothing else freezes.
+void freeze_shell_modes(const case_data::EvaluatedCase& inputs,
+                        Monitor& monitor, FrozenPart& part) {
+  if (!responses::asks_for_modes(part.input)) {
+    return;
+  }
+  const StageMeter meter;
+  const std::shared_ptr<shells::ShellPart> shell =
+      part.shells->part(inputs, part.film->reference().points);
+  const equations::ElasticSolution solution =
+      shells::solve_shell(inputs, *shell);
+  part.start.failure = solution.failure;
+  if (!part.start.failure) {
+    part.base_modes = responses::find_response_modes({.input = part.input,
+                                                      .inputs = inputs,
+                                                      .mesh = shell->skin,
+                                                      .solution = solution,
+                                                      .shell = shell.get(),
+                                                      .monitor = &monitor});
+    part.start.failure = part.base_modes.failure;
+  }
+  meter.add_to(part.start.seconds.fea, part.start.operations.fea);
 }
 
 bool freeze_pairs(FrozenPart& part) {
@@ -456,10 +480,11 @@ void freeze_part(const ForwardModelOptions& options, FrozenPart& part) {
   if (!film_and_mesh(inputs, options, part)) {
     return;
   }
+  Monitor& monitor = monitor_of(options);
   if (part.shells) {
+    freeze_shell_modes(inputs, monitor, part);
     return;
   }
-  Monitor& monitor = monitor_of(options);
   part.exclusion = choose_exclusion(
       part.input, part.base_mesh,
       options.edge_factor > 1.0 ? EmptyZones::Allowed : EmptyZones::Refused);

@@ -8,7 +8,6 @@
 
 #include "core/error.h"
 #include "fea/functionals/thickness.h"
-#include "fea/modes/mode_shapes.h"
 #include "fea/stress/peak_stress.h"
 
 namespace meniscus::forward {
@@ -183,9 +182,7 @@ std::vector<std::string> factor_warnings(const EvaluationFields& fields) {
     const auto c = static_cast<std::size_t>(found.load_case);
     modes::BucklingFigures figures;
     figures.modes.factors = {found.values[mode]};
-    figures.stresses = {modes::mode_stress(
-        fields.mesh, fields.inputs.materials, fields.inputs.load_cases[c],
-        fields.solution.displacements[c], found.shapes[mode])};
+    figures.stresses = {stress_in_mode(fields, c, found.shapes[mode])};
     if (!matters(figures, 0)) {
       warnings.push_back(fmt::format(
           "'{}' is the factor of a mode that does not matter: the material "

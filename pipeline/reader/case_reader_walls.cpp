@@ -234,14 +234,6 @@ void read_shells(CaseContext& context, const toml::table& root,
                                       table.choice("side").value_or("both"))
                      .value;
     shell.material = std::max(0, material_of(context, table, result));
-    if (!result.symmetry.empty()) {
-      context.problems.add(
-          table.line(),
-          fmt::format("{} stands beside [symmetry], which shells do not know "
-                      "yet; hold rims in the plane by fix and fix_rotation, or "
-                      "take [walls]",
-                      table.path()));
-    }
     result.shells.push_back(std::move(shell));
   }
 }

@@ -8,6 +8,8 @@
 #include "fea/modes/eigenvalue_bound.h"
 #include "fea/modes/mode_shapes.h"
 #include "fea/modes/modes.h"
+#include "fea/shell/shell_mode_works.h"
+#include "pipeline/shells/shell_eigen.h"
 
 namespace meniscus::responses {
 
@@ -58,16 +60,20 @@ class ModeSearch {
   std::optional<Failure> buckling(int count,
                                   const std::vector<VectorX>* start) {
     const auto c = static_cast<std::size_t>(found_.load_case);
+    const modes::BucklingOptions options{.count = count,
+                                         .tolerance = kModeTolerance,
+                                         .largest = kLargestFactor,
+                                         .monitor = task_.monitor,
+                                         .materials = &task_.inputs.materials,
+                                         .start = start,
+                                         .may_factor = true};
     modes::BucklingModes modes =
-        modes::buckling_modes(task_.model, task_.mesh, task_.inputs.load_cases,
-                              found_.load_case, task_.solution.displacements[c],
-                              {.count = count,
-                               .tolerance = kModeTolerance,
-                               .largest = kLargestFactor,
-                               .monitor = task_.monitor,
-                               .materials = &task_.inputs.materials,
-                               .start = start,
-                               .may_factor = true});
+        task_.shell != nullptr
+            ? shells::buckling_modes(*task_.shell, c,
+                                     task_.inputs.load_cases[c].name, options)
+            : modes::buckling_modes(*task_.model, task_.mesh,
+                                    task_.inputs.load_cases, found_.load_case,
+                                    task_.solution.displacements[c], options);
     found_.values = std::move(modes.factors);
     found_.shapes = std::move(modes.shapes);
     if (!modes.failure && found_.values.empty()) {
@@ -89,17 +95,23 @@ class ModeSearch {
                                      .materials = &task_.inputs.materials,
                                      .start = start,
                                      .may_factor = true};
-    modes::NaturalModes modes =
-        found_.load_case == case_data::AnalysisEntry::kFree
-            ? modes::natural_modes(task_.mesh, task_.inputs.materials,
-                                   held_as(task_.inputs, found_.load_case),
-                                   options)
-            : modes::natural_modes(task_.model, task_.mesh,
-                                   task_.inputs.load_cases, found_.load_case,
-                                   options);
+    modes::NaturalModes modes = natural_modes(options);
     found_.values = std::move(modes.frequencies);
     found_.shapes = std::move(modes.shapes);
     return modes.failure;
+  }
+
+  modes::NaturalModes natural_modes(const modes::ModeOptions& options) const {
+    if (task_.shell != nullptr) {
+      return shells::natural_modes(*task_.shell, found_.load_case, options);
+    }
+    return found_.load_case == case_data::AnalysisEntry::kFree
+               ? modes::natural_modes(task_.mesh, task_.inputs.materials,
+                                      held_as(task_.inputs, found_.load_case),
+                                      options)
+               : modes::natural_modes(*task_.model, task_.mesh,
+                                      task_.inputs.load_cases, found_.load_case,
+                                      options);
   }
 
   const ModeTask& task_;
@@ -113,6 +125,24 @@ std::vector<double> densities(const ModeTask& task, ResponseKind kind) {
     density.push_back(kind == ResponseKind::Frequency ? material.density : 1.0);
   }
   return density;
+}
+
+std::optional<std::size_t> followed_mode(const ModeTask& task,
+                                         const FoundModes& found,
+                                         const VectorX& reference) {
+  if (task.shell == nullptr) {
+    return modes::same_mode(task.mesh, densities(task, found.kind),
+                            found.shapes, reference);
+  }
+  const std::vector<shell::Section> sections =
+      found.kind == ResponseKind::Frequency
+          ? task.shell->sections
+          : shells::with_density(task.shell->sections, 1.0);
+  return modes::same_mode(
+      [&](const VectorX& x) {
+        return shell::mass_times(task.shell->mesh, sections, x);
+      },
+      found.shapes, reference);
 }
 
 /// The sum of a bound over a cluster; nothing where more modes must be known.
@@ -137,8 +167,7 @@ std::optional<ModalSum> followed(const ModeTask& task,
   const auto number = static_cast<std::size_t>(response.number) - 1;
   std::optional<std::size_t> at;
   if (base != nullptr) {
-    at = modes::same_mode(task.mesh, densities(task, found.kind), found.shapes,
-                          base->shapes[number]);
+    at = followed_mode(task, found, base->shapes[number]);
   } else if (number < found.values.size()) {
     at = number;
   }
@@ -240,6 +269,12 @@ class Problem {
 };
 
 }  // namespace
+
+bool asks_for_modes(const case_data::Case& input) {
+  return std::any_of(
+      input.responses.begin(), input.responses.end(),
+      [](const ResponseEntry& response) { return is_modal(response.kind); });
+}
 
 ResponseModes find_response_modes(const ModeTask& task) {
   const std::vector<ResponseEntry>& responses = task.input.responses;

@@ -10,6 +10,7 @@
 #include "core/monitor.h"
 #include "fea/elastic/elasticity.h"
 #include "pipeline/case_data/case.h"
+#include "pipeline/shells/shell_part.h"
 
 namespace meniscus::responses {
 
@@ -19,7 +20,8 @@ struct FoundModes {
   case_data::ResponseKind kind = case_data::ResponseKind::BucklingFactor;
   int load_case = 0;            // index, or AnalysisEntry::kFree
   std::vector<double> values;   // ascending: factors, or frequencies [1/time]
-  std::vector<VectorX> shapes;  // as of buckling_modes() and natural_modes()
+  std::vector<VectorX> shapes;  // as of buckling_modes() and natural_modes(),
+                                // of shells 6 numbers per node
 };
 
 /// A response as a sum over the modes of its problem.
@@ -42,12 +44,16 @@ struct ModeTask {
   const case_data::EvaluatedCase& inputs;
   const TetMesh& mesh;
   const equations::ElasticSolution& solution;
-  const elastic::ElasticModel& model;
+  const elastic::ElasticModel* model = nullptr;  // of solids
+  const shells::ShellPart* shell = nullptr;      // of shells, solved
   /// Of the design that the model is frozen at: searches begin with its shapes,
   /// and modes are followed from there. Null where this is that design.
   const ResponseModes* base = nullptr;
   Monitor* monitor = nullptr;  // may be null
 };
+
+/// Whether the case's responses take any.
+bool asks_for_modes(const case_data::Case& input);
 
 /// As many modes of each eigenproblem of the case's responses as these take; an
 /// eigenvalue that is not found is a failure. A pure function of the task.

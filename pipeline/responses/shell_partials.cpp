@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include "fea/shell/shell_mode_works.h"
+#include "fea/shell/shell_moments.h"
 #include "fea/shell/shell_norm.h"
 #include "pipeline/responses/response_partials.h"
 #include "pipeline/shells/shell_part.h"
@@ -41,13 +43,60 @@ ResponsePartials shell_energy(const ResponseTask& task) {
 
 /// The mass of a density of 1.
 ResponsePartials shell_volume(const shells::ShellPart& part) {
-  std::vector<shell::Section> sections = part.sections;
-  for (shell::Section& section : sections) {
-    for (shell::Ply& ply : section.laminate.plies) {
-      ply.material.density = 1.0;
+  return shell_to_partials(
+      shell::shell_mass(part.mesh, shells::with_density(part.sections, 1.0)));
+}
+
+/// Along the direction, made unit: the first moment over the mass.
+ResponsePartials shell_centre(const ResponseTask& task) {
+  const shells::ShellPart& part = *task.fields.shell;
+  const double length = task.inputs.direction.norm();
+  const Vec3 unit = task.inputs.direction / length;
+  const shell::MassMoments moments =
+      shell::mass_moments(part.mesh, part.sections, Vec3::Zero());
+  if (!(moments.mass > 0.0)) {
+    throw InvalidInput(fmt::format(
+        "response '{}': the shell has no mass, and so no centre of it; give "
+        "its material a density",
+        task.response.name));
+  }
+  const Vec3 centre = moments.first / moments.mass;
+  ResponsePartials result;
+  if (task.derivatives == element::Derivatives::All) {
+    result = shell_to_partials(shell::mass_integral(
+        part.mesh, part.sections, {.linear = unit / moments.mass}, centre));
+    result.by_direction = (centre - unit.dot(centre) * unit) / length;
+  }
+  result.value = unit.dot(centre);
+  return result;
+}
+
+/// As functionals::inertia_functional() has it.
+ResponsePartials shell_inertia(const ResponseTask& task) {
+  const shells::ShellPart& part = *task.fields.shell;
+  const double length = task.inputs.direction.norm();
+  const Vec3 unit = task.inputs.direction / length;
+  const Mat3 across = Mat3::Identity() - unit * unit.transpose();
+  Vec3 from = task.inputs.point;
+  if (!task.response.point) {
+    const shell::MassMoments whole =
+        shell::mass_moments(part.mesh, part.sections, Vec3::Zero());
+    from = whole.first / whole.mass;
+  }
+  const shell::MassMoments moments =
+      shell::mass_moments(part.mesh, part.sections, from);
+  ResponsePartials result;
+  if (task.derivatives == element::Derivatives::All) {
+    // About the centre of mass its own motion does not count.
+    result = shell_to_partials(shell::mass_integral(part.mesh, part.sections,
+                                                    {.square = across}, from));
+    result.by_direction = -2.0 / length * across * moments.second * unit;
+    if (task.response.point) {
+      result.by_point = -2.0 * across * moments.first;
     }
   }
-  return shell_to_partials(shell::shell_mass(part.mesh, sections));
+  result.value = across.cwiseProduct(moments.second).sum();
+  return result;
 }
 
 ResponsePartials mean_on_rim(const ResponseTask& task) {
@@ -105,6 +154,34 @@ ResponsePartials shell_stress_norm(const ResponseTask& task) {
   return result;
 }
 
+/// A sum over modes that were found with the design.
+ResponsePartials shell_modal(const ResponseTask& task) {
+  const ModalSum& sum = modal_sum(*task.fields.modes, task.response.name);
+  const shells::ShellPart& part = *task.fields.shell;
+  ResponsePartials result;
+  if (task.derivatives == element::Derivatives::All) {
+    const FoundModes& found = task.fields.modes->problems[sum.problem];
+    const modes::WeightedModes modes{found.values, found.shapes, sum.weights};
+    if (found.kind == case_data::ResponseKind::BucklingFactor) {
+      const shells::ShellCase& own =
+          part.cases[static_cast<std::size_t>(found.load_case)];
+      shell::ModeWork work = shell::factor_functional(
+          part.mesh, part.sections, own.actions.loads, own.displacement, modes);
+      VectorX by_displacement = std::move(work.by_displacement);
+      result = shell_to_partials(std::move(work));
+      result.cases.push_back({.load_case = found.load_case,
+                              .by_displacement = std::move(by_displacement),
+                              .by_forces = {},
+                              .by_temperature = {}});
+    } else {
+      result = shell_to_partials(
+          shell::frequency_functional(part.mesh, part.sections, modes));
+    }
+  }
+  result.value = sum.value;
+  return result;
+}
+
 }  // namespace
 
 std::optional<ResponsePartials> shell_partials(const ResponseTask& task) {
@@ -114,10 +191,17 @@ std::optional<ResponsePartials> shell_partials(const ResponseTask& task) {
     case Kind::Compliance:
     case Kind::StrainEnergy:
       return shell_energy(task);
+    case Kind::BucklingFactor:
+    case Kind::Frequency:
+      return shell_modal(task);
     case Kind::Mass:
       return shell_to_partials(shell::shell_mass(part.mesh, part.sections));
     case Kind::Volume:
       return shell_volume(part);
+    case Kind::CentreOfMass:
+      return shell_centre(task);
+    case Kind::Inertia:
+      return shell_inertia(task);
     case Kind::MaxVonMises:
       return shell_peak_stress(task);
     case Kind::VonMisesNorm:

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "pipeline/case_data/case_symmetry.h"
 #include "pipeline/case_data/case_values.h"
 #include "pipeline/case_data/response_kinds.h"
 #include "pipeline/shells/shell_part.h"
@@ -16,10 +17,10 @@ namespace {
 const std::vector<case_data::ResponseKind>& kinds_of_shells() {
   using K = case_data::ResponseKind;
   static const std::vector<case_data::ResponseKind> kinds = {
-      K::MeanDisplacement, K::DisplacementNorm, K::Rotation,
-      K::Compliance,       K::StrainEnergy,     K::Mass,
-      K::Volume,           K::MaxVonMises,      K::VonMisesNorm,
-      K::Envelope,         K::Expression};
+      K::MeanDisplacement, K::DisplacementNorm, K::Rotation,  K::Compliance,
+      K::StrainEnergy,     K::BucklingFactor,   K::Frequency, K::Mass,
+      K::Volume,           K::CentreOfMass,     K::Inertia,   K::MaxVonMises,
+      K::VonMisesNorm,     K::Envelope,         K::Expression};
   return kinds;
 }
 
@@ -136,7 +137,10 @@ class ShellChecks {
                                       load_case.name, what));
     };
     for (const case_data::SupportEntry& support : load_case.supports) {
-      if (support.support.kind != loads::SupportKind::Components) {
+      const std::vector<std::string> ends = case_data::cut_faces(input_);
+      const bool is_end =
+          std::count(ends.begin(), ends.end(), support.support.surface) > 0;
+      if (support.support.kind != loads::SupportKind::Components && !is_end) {
         refuse(support.line, "a support along normals");
       } else if (support.displacement) {
         refuse(support.line, "an enforced displacement");
@@ -236,13 +240,14 @@ class ShellChecks {
                     fmt::format("responses.{} is on a rim, where shells have "
                                 "mean_displacement without weight; name a film",
                                 response.name));
-    } else if (response.kind == case_data::ResponseKind::VonMisesNorm) {
-      check_norm(response);
+    } else if (response.kind == case_data::ResponseKind::VonMisesNorm ||
+               response.kind == case_data::ResponseKind::BucklingFactor) {
+      check_stress_by_loads(response);
     }
   }
 
   /// Pressures and weight stress a wall beside what they move it by.
-  void check_norm(const case_data::ResponseEntry& response) {
+  void check_stress_by_loads(const case_data::ResponseEntry& response) {
     std::vector<std::string> found;
     const case_data::CaseValues values(
         input_, case_data::initial_design(input_), found);
@@ -256,10 +261,11 @@ class ShellChecks {
         problems_.add(
             response.line,
             fmt::format("responses.{} is of load case '{}', whose {} follows "
-                        "the design, which norms of shells cannot yet; give it "
+                        "the design, which {} of shells cannot yet; give it "
                         "a fixed number",
                         response.name, load_case.name,
-                        pressed ? "pressure" : "gravity"));
+                        pressed ? "pressure" : "gravity",
+                        case_data::row_of(response.kind).name));
       }
     }
   }
@@ -276,12 +282,6 @@ class ShellChecks {
     }
     if (!analysis.exclude.empty()) {
       refuse("exclude");
-    }
-    if (analysis.frequencies > 0) {
-      refuse("frequencies");
-    }
-    if (analysis.buckling.value_or(0) > 0) {
-      refuse("buckling");
     }
     if (analysis.solver != equations::SolverKind::Automatic &&
         analysis.solver != equations::SolverKind::Cholesky) {

@@ -39,11 +39,35 @@ SurfaceNodes nodes_of(const walls::WallFilms& films) {
                        straight);
 }
 
+/// Points along a curve, or in a plane on which films slide.
+struct NamedPoints {
+  std::string ending;  // of the rims there: "/rim:CURVE", "/symmetry_1"
+  std::vector<int> vertices;
+};
+
+std::vector<NamedPoints> named_points(const walls::WallFilms& films) {
+  std::vector<NamedPoints> result;
+  for (const walls::RimName& name : films.names) {
+    result.push_back({"/rim:" + name.curve, name.vertices});
+  }
+  for (std::size_t p = 0; p < films.planes.planes.size(); ++p) {
+    NamedPoints& plane =
+        result.emplace_back(NamedPoints{"/" + films.planes.planes[p].rim, {}});
+    for (std::size_t v = 0; v < films.planes.at.size(); ++v) {
+      const std::vector<int>& own = films.planes.at[v];
+      if (std::count(own.begin(), own.end(), static_cast<int>(p)) > 0) {
+        plane.vertices.push_back(static_cast<int>(v));
+      }
+    }
+  }
+  return result;
+}
+
 /// Per point: the rims that it is on, ascending.
-std::map<int, std::vector<int>> rims_at(const walls::WallFilms& films) {
+std::map<int, std::vector<int>> rims_at(const std::vector<NamedPoints>& names) {
   std::map<int, std::vector<int>> rims;
-  for (std::size_t n = 0; n < films.names.size(); ++n) {
-    for (const int v : films.names[n].vertices) {
+  for (std::size_t n = 0; n < names.size(); ++n) {
+    for (const int v : names[n].vertices) {
       std::vector<int>& at = rims[v];
       if (at.empty() || at.back() != static_cast<int>(n)) {
         at.push_back(static_cast<int>(n));
@@ -53,10 +77,12 @@ std::map<int, std::vector<int>> rims_at(const walls::WallFilms& films) {
   return rims;
 }
 
-/// The films' edges of which both ends and the middle are on a curve.
+/// The films' edges of which both ends and the middle are on a curve, or in a
+/// plane.
 std::map<std::string, Line> rims_of(const walls::WallFilms& films,
                                     const SurfaceNodes& nodes) {
-  const std::map<int, std::vector<int>> at = rims_at(films);
+  const std::vector<NamedPoints> names = named_points(films);
+  const std::map<int, std::vector<int>> at = rims_at(names);
   const auto kept = [&](const std::vector<int>& rims, int v) {
     std::vector<int> common;
     if (const auto there = at.find(v); there != at.end()) {
@@ -81,8 +107,8 @@ std::map<std::string, Line> rims_of(const walls::WallFilms& films,
       for (const int n :
            kept(kept(first->second, nodes.corner[b]), nodes.mid[edge])) {
         if (taken.insert({label, n, edge}).second) {
-          rims[films.mesh.labels[label] + "/rim:" + films.names[n].curve]
-              .push_back({a, b, corners + edge});
+          rims[films.mesh.labels[label] + names[n].ending].push_back(
+              {a, b, corners + edge});
         }
       }
     }
@@ -138,6 +164,14 @@ ShellModel::ShellModel(const case_data::Case& input,
                                 entry.name));
   }
   rims_ = rims_of(films, nodes_);
+  for (const walls::WallPlane& plane : films.planes.planes) {
+    for (const std::string& label : films.mesh.labels) {
+      const std::string end = label + "/" + plane.rim;
+      if (rims_.contains(end)) {
+        planes_[end] = plane.normal;
+      }
+    }
+  }
   straighten_folded(nodes_, points);
 }
 
@@ -183,6 +217,7 @@ std::shared_ptr<ShellPart> ShellModel::part(
   part->skin = skin_of(surface, part->mesh);
   part->frozen = reference_;
   part->rims = rims_;
+  part->planes = planes_;
   return part;
 }
 
@@ -225,6 +260,23 @@ int nearest(const Points& corners, const std::set<int>& nodes, const Vec3& at) {
   return best;
 }
 
+/// An image in the plane moves and turns like the node: along the plane, about
+/// its normal. Planes across x, y or z have no axes of their own, so that rims
+/// may end in them.
+shell::NodeSupport in_plane(const Vec3& normal) {
+  shell::NodeSupport support;
+  Eigen::Index across = 0;
+  if (normal.cwiseAbs().maxCoeff(&across) < 1.0) {
+    across = 0;
+    support.axes = element::LocalAxes{normal, normal.unitOrthogonal()};
+  }
+  for (int k = 0; k < 3; ++k) {
+    support.held[k] = k == across;
+    support.held[3 + k] = k != across;
+  }
+  return support;
+}
+
 }  // namespace
 
 std::vector<shell::NodeSupport> node_supports(
@@ -232,7 +284,7 @@ std::vector<shell::NodeSupport> node_supports(
   std::vector<shell::NodeSupport> supports;
   for (const loads::Support& support : load_case.supports) {
     std::set<int> nodes;
-    if (is_rim(support.surface)) {
+    if (part.rims.contains(support.surface) || is_rim(support.surface)) {
       for (const std::array<int, 3>& edge : rim_of(part, support.surface)) {
         nodes.insert(edge.begin(), edge.end());
       }
@@ -248,11 +300,16 @@ std::vector<shell::NodeSupport> node_supports(
       nodes = {nearest(part.frozen, nodes, *support.at)};
     }
     const auto& turn = support.fix_rotation;
+    shell::NodeSupport held = {
+        .held = {support.fix_x, support.fix_y, support.fix_z, turn[0], turn[1],
+                 turn[2]},
+        .axes = support.axes};
+    if (support.kind == loads::SupportKind::Symmetry) {
+      held = in_plane(part.planes.at(support.surface));
+    }
     for (const int node : nodes) {
-      supports.push_back({.node = node,
-                          .held = {support.fix_x, support.fix_y, support.fix_z,
-                                   turn[0], turn[1], turn[2]},
-                          .axes = support.axes});
+      held.node = node;
+      supports.push_back(held);
     }
   }
   return supports;

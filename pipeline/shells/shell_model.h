@@ -48,6 +48,7 @@ class ShellModel {
   std::vector<walls::WallSpec> specs_;       // thicknesses have their shapes
   std::vector<std::string> keys_;            // of thicknesses, for messages
   std::map<std::string, shell::Line> rims_;  // as ShellPart has them
+  std::map<std::string, Vec3> planes_;       // the same
 };
 
 /// What holds the nodes of the part. Throws InvalidInput for a rim of no edge.

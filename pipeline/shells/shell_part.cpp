@@ -225,6 +225,16 @@ std::vector<double> nodal_von_mises(
   return values;
 }
 
+std::vector<shell::Section> with_density(std::vector<shell::Section> sections,
+                                         double density) {
+  for (shell::Section& section : sections) {
+    for (shell::Ply& ply : section.laminate.plies) {
+      ply.material.density = density;
+    }
+  }
+  return sections;
+}
+
 VectorX displacements_of(const VectorX& six) {
   VectorX three(six.size() / 2);
   for (Eigen::Index i = 0; i < three.size() / 3; ++i) {

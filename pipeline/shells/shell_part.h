@@ -47,7 +47,9 @@ struct ShellPart {
                   // films' names
   Points frozen;  // places of the corners, its first nodes, at the freeze
   std::vector<shell::Section> sections;     // one per shell of the case
-  std::map<std::string, shell::Line> rims;  // "FILM/rim:CURVE"
+  std::map<std::string, shell::Line> rims;  // "FILM/rim:CURVE", and those in
+                                            // planes: "FILM/symmetry_1"
+  std::map<std::string, Vec3> planes;       // of these: the unit normals
   std::vector<ShellCase> cases;             // per load case
 };
 
@@ -92,6 +94,10 @@ ShellPeak shell_peak(const ShellPart& part,
 std::vector<double> nodal_von_mises(
     const ShellPart& part, std::size_t load_case,
     const std::vector<element::Stress shell::WallStress::*>& heights);
+
+/// Of all their plies.
+std::vector<shell::Section> with_density(std::vector<shell::Section> sections,
+                                         double density);
 
 /// Displacements and rotations of 6 numbers per node, 3 each; and back, without
 /// rotations.

@@ -397,12 +397,11 @@ void StudyRun::keep_history() {
 }
 
 void StudyRun::solve_eigenproblems() {
-  if (fields_.shell) {
-    return;
-  }
   monitor_.progress({.stage = "fea", .detail = "buckling, frequencies"});
+  const forward::ForwardModel& model = stage().evaluator().model();
   result_.eigen = forward::eigen_figures(
-      input_, fields_, stage().evaluator().model().elasticity(), &limited_);
+      input_, fields_, fields_.shell ? nullptr : &model.elasticity(),
+      &limited_);
   own_seconds_.fea += result_.eigen->seconds;
   fields_.modes = forward::mode_shapes(input_, *result_.eigen);
 }

@@ -1,11 +1,14 @@
 #include "pipeline/whole/whole_part.h"
 
 #include <algorithm>
+#include <memory>
 #include <numeric>
 #include <utility>
 
 #include "fea/element/region_nodes.h"
+#include "fea/shell/shell_stress.h"
 #include "pipeline/case_data/case_symmetry.h"
+#include "pipeline/shells/shell_part.h"
 
 namespace meniscus::whole {
 
@@ -113,7 +116,10 @@ struct NodeImages {
   int corners = 0;
 };
 
-NodeImages node_images(const TetMesh& mesh, const Mirror& mirror) {
+/// One char per node: 1 in the plane.
+std::vector<char> shared_nodes(const forward::EvaluationFields& fields,
+                               const Mirror& mirror) {
+  const TetMesh& mesh = fields.mesh;
   std::vector<char> shared(mesh.nodes.size(), 0);
   for (int f = 0; f < mesh.face_count(); ++f) {
     if (mirror.cuts(mesh.labels[mesh.face_label[f]])) {
@@ -122,6 +128,19 @@ NodeImages node_images(const TetMesh& mesh, const Mirror& mirror) {
       }
     }
   }
+  if (fields.shell) {
+    for (const auto& [name, line] : fields.shell->rims) {
+      for (const auto& edge : line) {
+        for (const int n : edge) {
+          shared[n] = shared[n] != 0 || mirror.cuts(name) ? 1 : 0;
+        }
+      }
+    }
+  }
+  return shared;
+}
+
+NodeImages node_images(const TetMesh& mesh, const std::vector<char>& shared) {
   NodeImages result{std::vector<int>(mesh.nodes.size()),
                     std::vector<int>(mesh.nodes.size())};
   const auto add = [&](int begin, int end) {
@@ -154,7 +173,9 @@ void add_faces(const TetMesh& drawn, const NodeImages& at, const Mirror& mirror,
       }
       const int label = drawn.face_label[f];
       whole.face_label.push_back(is_image ? label_image[label] : label);
-      whole.face_element.push_back(drawn.face_element[f] + shift);
+      if (!drawn.face_element.empty()) {
+        whole.face_element.push_back(drawn.face_element[f] + shift);
+      }
       if (!drawn.face_front.empty()) {
         const int front = drawn.face_front[f];
         whole.face_front.push_back(front < 0 ? front : front + shift);
@@ -271,12 +292,74 @@ stress::RecoveredStress with_image(const stress::RecoveredStress& drawn,
   return result;
 }
 
+shell::FacetStress with_image(const shell::FacetStress& drawn,
+                              const Mirror& mirror) {
+  shell::FacetStress image;
+  for (std::size_t k = 0; k < image.size(); ++k) {
+    const shell::WallStress& from = drawn[kFaceImage[k]];
+    image[k] = {mirror.stress(from.negative), mirror.stress(from.middle),
+                mirror.stress(from.positive)};
+  }
+  return image;
+}
+
+/// Displacements turn over as vectors do, rotations the other way.
+VectorX six_with_image(const VectorX& drawn, const NodeImages& at,
+                       const Mirror& mirror) {
+  VectorX whole(6L * at.count);
+  for (std::size_t n = 0; n < at.drawn.size(); ++n) {
+    const auto own = drawn.segment<6>(static_cast<Eigen::Index>(6 * n));
+    whole.segment<6>(6L * at.image[n]) << mirror.vector(own.head<3>()),
+        -mirror.vector(own.tail<3>());
+    whole.segment<6>(6L * at.drawn[n]) = own;
+  }
+  return whole;
+}
+
+/// A shell that is shown, not solved. `skin`: of the whole.
+std::shared_ptr<shells::ShellPart> with_image(const shells::ShellPart& drawn,
+                                              const TetMesh& skin,
+                                              const NodeImages& at,
+                                              const Mirror& mirror) {
+  auto whole = std::make_shared<shells::ShellPart>();
+  whole->skin = skin;
+  whole->mesh.nodes = skin.nodes;
+  whole->mesh.section = twice(drawn.mesh.section);
+  whole->mesh.thickness = twice(drawn.mesh.thickness);
+  for (std::size_t f = 0; f < drawn.mesh.facets.size(); ++f) {
+    Vec3& t = whole->mesh.thickness[drawn.mesh.facets.size() + f];
+    std::swap(t[0], t[1]);
+  }
+  for (int f = 0; f < skin.face_count(); ++f) {
+    const std::span<const int> nodes = skin.face(f);
+    std::copy(nodes.begin(), nodes.end(),
+              whole->mesh.facets.emplace_back().begin());
+  }
+  whole->sections = drawn.sections;
+  for (const auto& [name, line] : drawn.rims) {
+    shell::Line& both = whole->rims[name];
+    for (const auto& [from, to, middle] : line) {
+      both.push_back({at.drawn[from], at.drawn[to], at.drawn[middle]});
+      both.push_back({at.image[from], at.image[to], at.image[middle]});
+    }
+  }
+  for (const shells::ShellCase& own : drawn.cases) {
+    shells::ShellCase& both = whole->cases.emplace_back();
+    both.displacement = six_with_image(own.displacement, at, mirror);
+    both.stress = own.stress;
+    for (const shell::FacetStress& stress : own.stress) {
+      both.stress.push_back(with_image(stress, mirror));
+    }
+  }
+  return whole;
+}
+
 /// What files and pictures show; temperatures, and sums of errors, stay those
 /// of the drawn part.
 void mirror_fields(const Mirror& mirror, forward::EvaluationFields& fields) {
   fields.film = with_image(fields.film, mirror);
   fields.boundary = with_image(fields.boundary, mirror);
-  const NodeImages at = node_images(fields.mesh, mirror);
+  const NodeImages at = node_images(fields.mesh, shared_nodes(fields, mirror));
   const TetMesh whole = with_image(fields.mesh, at, mirror);
   for (VectorX& u : fields.solution.displacements) {
     u = with_image(u, at, mirror, false);
@@ -286,6 +369,9 @@ void mirror_fields(const Mirror& mirror, forward::EvaluationFields& fields) {
   }
   for (forward::ModeShape& mode : fields.modes) {
     mode.shape = with_image(mode.shape, at, mirror, false);
+  }
+  if (fields.shell) {
+    fields.shell = with_image(*fields.shell, whole, at, mirror);
   }
   for (forward::PartStress& stress : fields.stresses) {
     stress.points = with_image(stress.points, mirror);

@@ -326,6 +326,91 @@ buckling = 0
 """
 
 
+# The tube as thick as a tenth of its radius, under what presses it; `root`
+# clamps: of walls by their thickness.
+THICK = TUBE[:TUBE.index("[load_cases.inner]")].replace(
+    "initial = 1\nbounds = [0.2, 5]", "initial = 5\nbounds = [0.2, 15]") + """
+[load_cases.{name}]
+supports = [{supports}]
+loads = [{load}]
+
+[responses.mass]
+kind = "mass"
+
+[analysis]
+buckling = 2
+frequencies = 4
+"""
+CLAMPED = '{{ on = "skin/rim:{}", fix = "xyz", fix_rotation = "xyz" }}'
+PRESSED = {
+    "along": (CLAMPED.format("low") + ', { on = "skin/rim:high", fix = "xy" }',
+              '{ on = "skin/rim:high", force = [0, 0, -1e6] }'),
+    "around": (CLAMPED.format("low") + ", " + CLAMPED.format("high"),
+               '{ on = "skin/outside", pressure = 50 }'),
+    "bent": (CLAMPED.format("low"),
+             '{ on = "skin/rim:high", force = [1e5, 0, 0] }'),
+}
+
+
+# Where mass is.
+MASSES = """
+[responses.middle]
+kind = "centre_of_mass"
+direction = [1, 2, "wall"]
+
+[responses.spin]
+kind = "inertia"
+axis = [1, "wall", 0.5]
+
+[responses.swing]
+kind = "inertia"
+axis = [0, 0, 1]
+through = ["wall", 5, 0]
+"""
+
+# What eigenvalues say of shells, of a load case.
+MODAL = """
+[responses.stable]
+kind = "buckling_factor"
+load_case = "{0}"
+
+[responses.third]
+kind = "buckling_factor"
+number = 3
+load_case = "{0}"
+
+[responses.hum]
+kind = "frequency"
+
+[responses.flight]
+kind = "frequency"
+load_case = "free"
+"""
+
+
+def tapered_load(taper):
+    """Of a strip of t = 1 + taper x / 100, clamped at x = 0 and pressed at its
+    other end: E I y'' = -P y, y from the end's line, so that y' is first 0 at
+    the clamp."""
+    def turns(load):
+        steps = 400
+        y, slope, h = 0.0, 1.0, 100 / steps
+        for k in range(steps):
+            middle = 100 - (k + 0.5) * h
+            bend = load / (1000 * 20 / 12 * (1 + taper * middle / 100) ** 3)
+            y += 0.5 * h * slope
+            slope -= h * bend * y
+            y += 0.5 * h * slope
+            if slope < 0:
+                return True
+        return False
+    low, high = 0.0, 5.0
+    for _ in range(60):
+        low, high = ((low, (low + high) / 2) if turns((low + high) / 2)
+                     else ((low + high) / 2, high))
+    return low
+
+
 class Shells(ProgramTest):
     def case(self, text=TUBE, name="case.toml"):
         return super().case(text, name)
@@ -432,13 +517,157 @@ class Shells(ProgramTest):
     def test_has_exact_gradients_of_films_drawn_at_random(self):
         for seed in range(4):
             with self.subTest(seed=seed):
-                self.expect(self.call("check-gradient",
-                                      self.case(drawn(seed))), 0)
+                self.expect(self.call("check-gradient", self.case(
+                    drawn(seed) + MASSES)), 0)
+
+    # Least factors and frequencies, and a third that is followed by its shape.
+    def test_has_exact_gradients_of_eigenvalues(self):
+        self.expect(self.call("check-gradient", self.case(
+            TUBE + MODAL.format("many"))), 0)
+        for seed in range(3):
+            with self.subTest(seed=seed):
+                self.expect(self.call("check-gradient", self.case(
+                    drawn(seed) + MODAL.format("one"))), 0)
 
     def test_takes_its_thickness_along(self):
         text = TUBE.replace('thickness = "wall"',
                             'thickness = "wall * (1 + z^2 / 5000)"')
         self.expect(self.call("check-gradient", self.case(text)), 0)
+
+    # A clamped strip, and one that nothing holds: Euler and Bernoulli, turning
+    # inertia and shear being nothing at t / L = 1/100.
+    def test_vibrates_as_beams_do(self):
+        wave = math.sqrt(1000 / 12 / 1e-9)  # [mm^2/s] for t = 1
+        for held, roots, skipped in (
+                ("tip", [1.87510, 4.69409, 7.85476], 0),
+                ("free", [4.73004, 7.85320], 6)):
+            result, said, out = self.run_case(STRIP.replace(
+                "buckling = 0", f'frequencies = 6\nsupports_of = "{held}"'),
+                name=held)
+            found = result["natural_frequencies"]
+            self.assertEqual(found["rigid_motions"], skipped)
+            for root in roots:
+                ideal = root ** 2 / (2 * math.pi * 100 ** 2) * wave
+                # Between them it turns about its axis.
+                self.assertLess(min(abs(f / ideal - 1)
+                                    for f in found["values"]), 3e-3)
+            self.assertIn("natural frequencies", said)
+            for name in ("part.vtu", "part_surface.vtp"):
+                self.assertIn(b'Name="mode_6"', (out / name).read_bytes())
+            self.assertIn("frequencies", (out / "report.html").read_text())
+
+    # NAFEMS FV12 at a hundredth of its length and thickness.
+    def test_vibrates_as_nafems_says(self):
+        plate = STRIP.replace(
+            "[[0, 0, 0], [100, 0, 0], [100, 20, 0], [0, 20, 0]]",
+            "[[0, 0, 0], [100, 0, 0], [100, 100, 0], [0, 100, 0]]").replace(
+            "[[0, 0, 0], [0, 20, 0], [0, 20, -9], [0, 0, -9]]",
+            "[[0, 0, 0], [0, 100, 0], [0, 100, -9], [0, 0, -9]]").replace(
+            "[[100, 0, 0], [100, 20, 0], [100, 20, -9], [100, 0, -9]]",
+            "[[100, 0, 0], [100, 100, 0], [100, 100, -9], [100, 0, -9]]"
+            ).replace("= 1000\n", "= 200e3\n").replace(
+            "poisson_ratio = 0", "poisson_ratio = 0.3").replace(
+            '"1000 kg/m3"', '"8000 kg/m3"').replace(
+            "buckling = 0",
+            'buckling = 0\nfrequencies = 7\nsupports_of = "free"').replace(
+            "fea = 7", "fea = 14")
+        result, _, _ = self.run_case(plate, "--no-pictures", "--set",
+                                     "design.wall.initial=0.5")
+        target = [1.622, 2.360, 2.922, 4.191, 4.191, 7.416, 7.416]
+        for found, ideal in zip(result["natural_frequencies"]["values"],
+                                target, strict=True):
+            # The last two are upper bounds by few functions.
+            self.assertLess(abs(found / (100 * ideal) - 1),
+                            2e-3 if ideal < 5 else 1.2e-2)
+
+    # Euler's column, clamped at one end, and a plate of five squares hinged
+    # along all sides: four times pi^2 D / b^2.
+    def test_buckles_as_columns_and_plates_do(self):
+        stiffness = 1000 * 0.25 ** 3 / 12  # of width, t = 1/4
+        column = STRIP.replace("force = [0, 0, 0.1]", "force = [-0.1, 0, 0]")
+        plate = column.replace('fix_rotation = "xyz" }', '}, '
+                               '{ on = "plate/rim:outline", fix = "z" }'
+                               ).replace('"xyz", }', '"xyz" }')
+        for text, force in (
+                (column, math.pi ** 2 * 20 * stiffness / 4 / 100 ** 2),
+                (plate, 4 * math.pi ** 2 * stiffness / 20)):
+            result, said, out = self.run_case(
+                text.replace("buckling = 0", "buckling = 2").replace(
+                    "fea = 7", "fea = 4"),
+                "--no-pictures", "--set", "design.wall.initial=0.25",
+                name=f"out_{force:.3f}")
+            found = result["buckling"]["tip"]
+            self.assertLess(abs(0.1 * found["factors"][0] / force - 1), 4e-3)
+            self.assertAlmostEqual(found["stress"][0]["von_mises"], 0.02, 4)
+            self.assertIn(b'Name="buckling_tip_2"',
+                          (out / "part.vtu").read_bytes())
+
+    # Walls of the same film, of tetrahedra.
+    def test_vibrates_and_buckles_as_walls_do(self):
+        for name, (supports, load) in PRESSED.items():
+            with self.subTest(name=name):
+                text = THICK.format(name=name, supports=supports, load=load)
+                walls = text.replace("[shells.tube]", "[walls.tube]").replace(
+                    ', fix_rotation = "xyz"', "")
+                one, _, _ = self.run_case(text, "--no-pictures", name=name)
+                two, _, _ = self.run_case(walls, "--no-pictures",
+                                          name=f"{name}_walls")
+                for a, b, most in (
+                        (one["buckling"][name]["factors"],
+                         two["buckling"][name]["factors"], 0.03),
+                        (one["natural_frequencies"]["values"],
+                         two["natural_frequencies"]["values"], 0.015)):
+                    self.assertEqual(len(a), len(b))
+                    for x, y in zip(a, b):
+                        self.assertLess(abs(x / y - 1), most)
+                self.assertLess(
+                    abs(one["buckling"][name]["stress"][0]["von_mises"] /
+                        two["buckling"][name]["stress"][0]["von_mises"] - 1),
+                    0.06)
+
+    # Half of the tube is the whole's, modes that are symmetric included; so is
+    # a quarter under what a quarter can have.
+    def test_is_half_or_a_quarter_of_the_whole(self):
+        load = ('{{ on = "skin/rim:high", force = [{:g}, 0, {:g}] }}, '
+                '{{ on = "skin/outside", pressure = 0.5 }}')
+        told = """
+[responses.sink]
+kind = "mean_displacement"
+on = "skin/rim:high"
+direction = [0, 0, 1]
+
+[responses.work]
+kind = "compliance"
+"""
+        for planes, across in ((1, 1000), (2, 0)):
+            with self.subTest(planes=planes):
+                parts = 2 ** planes
+                whole = THICK.format(name="all", load=load.format(across, -4000),
+                                     supports=CLAMPED.format("low")) + told
+                drawn = THICK.format(
+                    name="all", supports=CLAMPED.format("low"),
+                    load=load.format(across / parts, -4000 / parts)).replace(
+                    "ring^2 * 100", f"ring^2 * {100 / parts:g}").replace(
+                    "[shells.tube]", """[symmetry]
+planes = [{ at = [0, 0, 0], normal = [0, 1, 0] }%s]
+
+[shells.tube]""" % (", { at = [0, 0, 0], normal = [1, 0, 0] }"
+                    if planes == 2 else "")) + told
+                one, _, _ = self.run_case(whole, "--no-pictures",
+                                          name=f"whole_{planes}")
+                two, _, out = self.run_case(drawn, name=f"drawn_{planes}")
+                for name, value in one["responses"].items():
+                    self.assertLess(
+                        abs(two["responses"][name] / value - 1), 1e-3)
+                # The whole has each of them twice.
+                self.assertLess(
+                    abs(two["natural_frequencies"]["values"][0] /
+                        one["natural_frequencies"]["values"][0] - 1), 1e-3)
+                self.assertRegex(
+                    (out / "part.vtu").read_bytes(),
+                    rb'NumberOfCells="%d"' % (parts * two["shell"]["facets"]))
+                self.assertTrue((out / "part.png").exists())
+                self.expect(self.call("check-gradient", self.case(drawn)), 0)
 
     def test_is_sized(self):
         study = """
@@ -451,6 +680,38 @@ constraints = [{ response = "dip", max = 10 }]
         self.assertEqual(result["status"], "converged")
         ideal = (0.1 * 100 ** 3 * 12 / (3 * 1000 * 20 * 10)) ** (1 / 3)
         self.assertLess(abs(result["parameters"]["wall"] / ideal - 1), 2e-3)
+
+    # The lightest strip that stands, of all whose thickness is linear.
+    def test_is_shaped_against_buckling(self):
+        text = STRIP.replace("force = [0, 0, 0.1]", "force = [-0.5, 0, 0]"
+                             ).replace('thickness = "wall"', 'thickness = '
+                                       '"wall * (1 + taper * x / 100)"'
+                                       ).replace("[curves.outline]", """
+[design.taper]
+initial = 0
+bounds = [-0.9, 0.5]
+
+[curves.outline]""") + """
+[responses.stable]
+kind = "buckling_factor"
+
+[study]
+kind = "minimize"
+objective = "mass"
+constraints = [{ response = "stable", min = 1.5 }]
+"""
+        result, _, _ = self.run_case(text, "--no-pictures")
+        self.assertEqual(result["status"], "converged")
+        self.assertLess(abs(result["responses"]["stable"] / 1.5 - 1), 2e-3)
+
+        def mass(taper):
+            wall = (1.5 * 0.5 / tapered_load(taper)) ** (1 / 3)
+            return 2e-6 * wall * (1 + taper / 2)
+
+        taper = result["parameters"]["taper"]
+        self.assertLess(abs(result["responses"]["mass"] / mass(taper) - 1),
+                        2e-3)
+        self.assertLess(mass(taper), min(mass(taper - 0.1), mass(taper + 0.1)))
 
     def test_has_the_same_bits_for_any_number_of_threads(self):
         figures = []
@@ -491,12 +752,14 @@ constraints = [{ response = "dip", max = 10 }]
              "a temperature"),
             ("pressure = 0.1", 'pressure = "0.1 + z"', "a pressure of place"),
             ("spin = 100", 'spin = "inside"', "a spin that follows the design"),
-            ('kind = "mass"', 'kind = "frequency"',
-             "responses.mass is of kind frequency, which shells do not have"),
+            ('kind = "mass"', 'kind = "uniformity"',
+             "responses.mass is of kind uniformity, which shells do not have"),
+            ('kind = "mass"', 'kind = "buckling_factor"\nload_case = "inner"',
+             "whose pressure follows the design"),
             ('power = 8\nload_case = "many"', 'power = 8\nload_case = "inner"',
              "whose pressure follows the design"),
             ("fea = 8", "fea = 8\nfilm = 8", "resolution.film is as long"),
-            ("buckling = 0", "buckling = 1", "analysis.buckling is of solids"),
+            ("buckling = 0", "adapt = true", "analysis.adapt is of solids"),
             ('youngs_modulus = "210 GPa"', 'youngs_modulus = "1e5 * fill"',
              "'steel' follows the design"),
             ('material = "void"', 'material = "steel"',
@@ -510,6 +773,33 @@ constraints = [{ response = "dip", max = 10 }]
                 TUBE.replace(old, new, 1))), 2)
             self.assertIn(said, done.stderr)
             self.assertRegex(done.stderr, r"case\.toml(:\d+)?: ")
+
+    # A pipe with its material outside: about its axis, and across it.
+    def test_has_the_moments_of_a_pipe(self):
+        text = TUBE.replace('material = "steel"\n',
+                            'material = "steel"\nside = "outside"\n', 1) + """
+[responses.centre]
+kind = "centre_of_mass"
+direction = [0, 0, 1]
+
+[responses.axial]
+kind = "inertia"
+axis = [0, 0, 1]
+
+[responses.across]
+kind = "inertia"
+axis = [1, 0, 0]
+through = [0, 0, 50]
+"""
+        result, _, _ = self.run_case(text, "--no-pictures", "--set",
+                                     "design.wall.initial=5")
+        found = result["responses"]
+        square = 50 ** 2 + 55 ** 2
+        mass = 7.85e-9 * math.pi * (55 ** 2 - 50 ** 2) * LENGTH
+        self.assertLess(abs(found["centre"]), 0.05)
+        self.assertLess(abs(found["axial"] / (mass * square / 2) - 1), 4e-3)
+        self.assertLess(abs(found["across"] / (mass * (
+            square / 4 + LENGTH ** 2 / 12 + 50 ** 2)) - 1), 4e-3)
 
     def test_tells_of_a_shell_that_can_move(self):
         text = STRIP.replace(', fix_rotation = "xyz"', "")

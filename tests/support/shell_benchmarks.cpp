@@ -3,11 +3,10 @@
 #include <cmath>
 #include <numbers>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 #include "core/math/gauss_rule.h"
-#include "fea/shell/shell_assembly.h"
+#include "fea/shell/shell_modes.h"
 #include "fea/shell/shell_system.h"
 
 namespace meniscus::shell_benchmarks {
@@ -384,67 +383,21 @@ double free_cylinder_energy(double thickness, const GridOptions& options,
          std::pow(thickness, 3);
 }
 
-namespace {
-
-/// The largest theta of A x = theta K x, descending, by subspace iteration
-/// (Bathe 1971); lower triangles.
-template <class Factor>
-VectorX largest(const SparseMatrix& A, const SparseMatrix& K,
-                const Factor& factor, int count) {
-  const int block = 2 * count + 8;
-  const auto a = A.selfadjointView<Eigen::Lower>();
-  const auto k = K.selfadjointView<Eigen::Lower>();
-  Eigen::MatrixXd X = Eigen::MatrixXd::Random(A.rows(), block);
-  VectorX theta;
-  for (int round = 0; round < 60; ++round) {
-    const Eigen::MatrixXd AX = a * X;
-    X = factor.solve(AX);
-    const Eigen::MatrixXd small_A = X.transpose() * (a * X);
-    const Eigen::MatrixXd small_K = X.transpose() * (k * X);
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> small(
-        0.5 * (small_A + small_A.transpose()),
-        0.5 * (small_K + small_K.transpose()));
-    X = X * small.eigenvectors();
-    const VectorX now = small.eigenvalues().reverse().head(count);
-    const bool done =
-        theta.size() == count &&
-        (now - theta).cwiseAbs().cwiseQuotient(now).maxCoeff() < 1e-10;
-    theta = now;
-    if (done) {
-      break;
-    }
-  }
-  return theta;
+std::vector<double> frequencies(const ShellMesh& mesh,
+                                const std::vector<Section>& sections,
+                                const std::vector<NodeSupport>& supports,
+                                int count) {
+  const modes::NaturalModes found =
+      natural_modes(mesh, sections, supports, {.count = count});
+  return found.failure ? std::vector<double>() : found.frequencies;
 }
 
-}  // namespace
-
-VectorX frequencies(const ShellMesh& mesh, const std::vector<Section>& sections,
-                    const std::vector<NodeSupport>& supports, int count,
-                    double shift) {
-  const auto laws = laminate_laws(sections);
-  const ShellFreedom freedom(static_cast<int>(mesh.nodes.size()), supports);
-  const ShellAssembly assembly(mesh, freedom);
-  const SparseMatrix M = assembly.sum(
-      [&](int f) { return facet_mass(facet_of(mesh, sections, laws, f)); });
-  const SparseMatrix K = assembly.sum([&](int f) -> FacetMatrix {
-    const Facet facet = facet_of(mesh, sections, laws, f);
-    return condensed(whole_stiffness(facet)) + shift * facet_mass(facet);
-  });
-  SymmetricFactor factor(K, FactorKind::Cholesky, assembly.elimination_order());
-  if (!factor.factorize(K)) {
-    return {};
-  }
-  const VectorX theta = largest(M, K, factor, count);
-  return ((theta.cwiseInverse().array() - shift).max(0.0)).sqrt() / (2.0 * kPi);
-}
-
-VectorX buckling_factors(const ShellSystem& system, const ShellLoads& loads,
-                         int count) {
-  const SparseMatrix K_g =
-      -system.geometric(loads, system.solve(loads).displacement);
-  return largest(K_g, system.stiffness(), system.factor(), count)
-      .cwiseInverse();
+std::vector<double> buckling_factors(const ShellSystem& system,
+                                     const ShellLoads& loads, int count) {
+  const modes::BucklingModes found =
+      buckling_modes(system, loads, system.solve(loads).displacement, "loads",
+                     {.count = count, .largest = 1e12});
+  return found.failure ? std::vector<double>() : found.factors;
 }
 
 }  // namespace meniscus::shell_benchmarks

@@ -55,15 +55,15 @@ double twisted_beam(double thickness, double force, bool in_plane,
 double free_cylinder_energy(double thickness, const GridOptions& options,
                             const Element& element);
 
-/// The lowest natural frequencies [1/time]; `shift` [rad^2/time^2] makes a free
-/// shell's stiffness definite, about the square of the first.
-VectorX frequencies(const shell::ShellMesh& mesh,
-                    const std::vector<shell::Section>& sections,
-                    const std::vector<shell::NodeSupport>& supports, int count,
-                    double shift);
+/// The lowest natural frequencies above those of rigid motions [1/time]; none
+/// where they were not found.
+std::vector<double> frequencies(const shell::ShellMesh& mesh,
+                                const std::vector<shell::Section>& sections,
+                                const std::vector<shell::NodeSupport>& supports,
+                                int count);
 
 /// The least factors of a system's loads under which it buckles, ascending.
-VectorX buckling_factors(const shell::ShellSystem& system,
-                         const shell::ShellLoads& loads, int count);
+std::vector<double> buckling_factors(const shell::ShellSystem& system,
+                                     const shell::ShellLoads& loads, int count);
 
 }  // namespace meniscus::shell_benchmarks

@@ -170,12 +170,13 @@ TEST(ShellBenchmarks, BendingConvergesAtItsOrder) {
   }
 }
 
-void expect_frequencies(const char* name, const VectorX& found, int skipped,
-                        const std::vector<double>& target, double tolerance) {
-  ASSERT_GE(found.size(), skipped + static_cast<int>(target.size()));
+void expect_frequencies(const char* name, const std::vector<double>& found,
+                        std::size_t skipped, const std::vector<double>& target,
+                        double tolerance) {
+  ASSERT_GE(found.size(), skipped + target.size());
   std::string text;
   for (std::size_t k = 0; k < target.size(); ++k) {
-    const double f = found[skipped + static_cast<Eigen::Index>(k)];
+    const double f = found[skipped + k];
     text += fmt::format(" {:.3f}", f);
     EXPECT_NEAR(f / target[k], 1.0, tolerance) << k;
   }
@@ -194,12 +195,11 @@ TEST(ShellBenchmarks, NafemsFv12FreePlate) {
           return {10 * s, 10 * t, 0};
         },
         0.05, mesh);
-    const VectorX f =
-        frequencies(shell.mesh, {isotropic(200e9, 0.3, 8000.0)}, {}, 13, 100.0);
-    EXPECT_LT(f[5], 1e-3);
-    expect_frequencies("FV12", f, 6, {1.622, 2.360, 2.922, 4.191, 4.191},
+    const std::vector<double> f =
+        frequencies(shell.mesh, {isotropic(200e9, 0.3, 8000.0)}, {}, 7);
+    expect_frequencies("FV12", f, 0, {1.622, 2.360, 2.922, 4.191, 4.191},
                        kTolerance);
-    expect_frequencies("FV12", f, 9, {4.233, 4.233, 7.416, 7.416},
+    expect_frequencies("FV12", f, 3, {4.233, 4.233, 7.416, 7.416},
                        kUpperBounds);
   }
 }
@@ -216,8 +216,8 @@ TEST(ShellBenchmarks, NafemsFv32TaperedMembrane) {
     hold(supports, shell.nodes([](double s, double) { return s < 1e-9; }),
          "xy");
     hold(supports, shell.nodes([](double, double) { return true; }), "zab");
-    const VectorX f = frequencies(shell.mesh, {isotropic(200e9, 0.3, 8000.0)},
-                                  supports, 6, 0.0);
+    const std::vector<double> f =
+        frequencies(shell.mesh, {isotropic(200e9, 0.3, 8000.0)}, supports, 6);
     expect_frequencies("FV32", f, 0,
                        {44.623, 130.03, 162.70, 246.05, 379.90, 391.44},
                        kTolerance);
@@ -278,11 +278,11 @@ TEST(ShellBenchmarks, FrequenciesOfCylinders) {
     hold(supports,
          shell.nodes([](double, double t) { return t < 1e-9 || t > 1 - 1e-9; }),
          "xyc");
-    // The first moves along the axis as a whole.
-    const VectorX f =
-        frequencies(shell.mesh, {isotropic(70e9, 0.3, 2700)}, supports, 5, 1e5);
-    EXPECT_LT(f[0], 1e-2);
-    expect_frequencies("cylinder", f, 1, exact, kThinShell);
+    // Free to move along the axis as a whole.
+    expect_frequencies(
+        "cylinder",
+        frequencies(shell.mesh, {isotropic(70e9, 0.3, 2700)}, supports, 4), 0,
+        exact, kThinShell);
   }
 }
 

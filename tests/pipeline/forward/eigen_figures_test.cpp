@@ -43,7 +43,7 @@ struct Bar {
       const case_data::AnalysisEntry& analysis) const {
     case_data::Case input;
     input.analysis = analysis;
-    return forward::eigen_figures(input, fields, *model);
+    return forward::eigen_figures(input, fields, &*model);
   }
 };
 
@@ -71,7 +71,7 @@ TEST(EigenFigures, TellFrequenciesFactorsAndTheirModes) {
   input.analysis = {.frequencies = 3, .supports_of = 1, .buckling = 2};
   const Bar bar(100.0);
   const forward::EigenFigures figures =
-      forward::eigen_figures(input, bar.fields, *bar.model);
+      forward::eigen_figures(input, bar.fields, &*bar.model);
   nlohmann::ordered_json told;
   forward::add_eigen_json(figures, told);
   EXPECT_EQ(told["natural_frequencies"]["supports_of"], "pull");
@@ -183,7 +183,7 @@ TEST(EigenFigures, WithoutAnAnswerSayWhy) {
   case_data::Case input;
   input.analysis = {.frequencies = 2, .buckling = 0};
   const forward::EigenFigures figures =
-      forward::eigen_figures(input, fields, model);
+      forward::eigen_figures(input, fields, &model);
   EXPECT_THAT(forward::eigen_warnings(figures),
               ElementsAre(HasSubstr("'steel' of region 0 has density 0")));
 }
@@ -193,13 +193,13 @@ TEST(EigenFigures, AreLeftOutWithARemarkWhereTheMatrixIsSpread) {
   case_data::Case input;
   input.analysis.solver = equations::SolverKind::Distributed;
   const forward::EigenFigures figures =
-      forward::eigen_figures(input, bar.fields, *bar.model);
+      forward::eigen_figures(input, bar.fields, &*bar.model);
   EXPECT_THAT(figures.buckling, IsEmpty());
   EXPECT_THAT(forward::eigen_warnings(figures),
               ElementsAre(HasSubstr("no buckling factors: the solver petsc")));
   input.analysis.buckling = 0;
   EXPECT_THAT(forward::eigen_warnings(
-                  forward::eigen_figures(input, bar.fields, *bar.model)),
+                  forward::eigen_figures(input, bar.fields, &*bar.model)),
               IsEmpty());
 }
 

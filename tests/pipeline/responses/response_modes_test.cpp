@@ -67,7 +67,7 @@ class Bar {
                                            .inputs = state.inputs,
                                            .mesh = state.mesh,
                                            .solution = state.solution,
-                                           .model = *model_,
+                                           .model = &*model_,
                                            .base = base});
   }
 
