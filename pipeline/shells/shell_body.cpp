@@ -6,7 +6,7 @@
 #include <set>
 #include <utility>
 
-#include <Eigen/Geometry>
+#include "pipeline/shells/film_normals.h"
 
 namespace meniscus::shells {
 
@@ -14,35 +14,18 @@ namespace {
 
 using Face = std::array<int, 6>;
 
-/// Natural coordinates of a facet's nodes.
-constexpr std::array<std::array<double, 2>, 6> kPlaces = {
-    {{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}, {0.5, 0.0}, {0.5, 0.5}, {0.0, 0.5}}};
-
-/// Of the facet at one of its nodes, as long as the tangents' product.
-Vec3 normal_at(const Points& nodes, const Face& facet, std::size_t at) {
-  const auto [s, t] = kPlaces[at];
-  const double r = 1.0 - s - t;
-  const std::array<double, 6> by_s = {1.0 - 4.0 * r, 4.0 * s - 1.0, 0.0,
-                                      4.0 * (r - s), 4.0 * t,       -4.0 * t};
-  const std::array<double, 6> by_t = {1.0 - 4.0 * r, 0.0,     4.0 * t - 1.0,
-                                      -4.0 * s,      4.0 * s, 4.0 * (r - t)};
-  Vec3 along_s = Vec3::Zero();
-  Vec3 along_t = Vec3::Zero();
-  for (std::size_t i = 0; i < facet.size(); ++i) {
-    along_s += by_s[i] * nodes[facet[i]];
-    along_t += by_t[i] * nodes[facet[i]];
-  }
-  return along_s.cross(along_t);
-}
-
 /// One film's closed surface.
 class FilmBody {
  public:
   FilmBody(const ShellPart& part, int label, int number, ShellBody& body)
-      : part_(part), label_(label), number_(number), body_(body) {
+      : part_(part),
+        label_(label),
+        number_(number),
+        body_(body),
+        normals_(film_normals(part, label)) {
     for (std::size_t f = 0; f < part.mesh.facets.size(); ++f) {
       if (part.skin.face_label[f] == label) {
-        add_normals(f);
+        add_walls(f);
       }
     }
   }
@@ -84,18 +67,16 @@ class FilmBody {
 
  private:
   struct Wall {
-    Vec3 normal = Vec3::Zero();
     double thickness = 0.0;
     double offset = 0.0;
     double facets = 0.0;
   };
 
-  void add_normals(std::size_t f) {
+  void add_walls(std::size_t f) {
     const Face& facet = part_.mesh.facets[f];
     const std::array<double, 6> t = shell::facet_thicknesses(part_.mesh, f);
     for (std::size_t i = 0; i < facet.size(); ++i) {
       Wall& wall = walls_[facet[i]];
-      wall.normal += normal_at(part_.mesh.nodes, facet, i);
       wall.thickness += t[i];
       wall.offset += part_.sections[part_.mesh.section[f]].offset;
       wall.facets += 1.0;
@@ -133,7 +114,7 @@ class FilmBody {
       const double thickness = wall.thickness / wall.facets;
       const double height =
           thickness * (wall.offset / wall.facets + 0.5 * side);
-      const Vec3 over = height * wall.normal.normalized();
+      const Vec3 over = height * normals_.at(node);
       body_.points.push_back({node, side, over});
       body_.mesh.nodes.emplace_back(part_.mesh.nodes[node] + over);
     }
@@ -161,6 +142,7 @@ class FilmBody {
   int label_;
   int number_;
   ShellBody& body_;
+  std::map<int, Vec3> normals_;
   std::map<int, Wall> walls_;  // of the film's nodes: sums over facets
   std::map<std::pair<int, int>, int> ids_;
 };
