@@ -14,6 +14,7 @@
 #include "core/error.h"
 #include "io/calculix_material.h"
 #include "io/calculix_names.h"
+#include "io/calculix_shell_held.h"
 #include "io/file_notes.h"
 
 namespace meniscus::io {
@@ -31,9 +32,16 @@ std::vector<std::string> names_of(const std::vector<Row>& rows) {
   return deck_names(names);
 }
 
-/// From each node to the middle of the wall, the mean over its facets.
-Points to_middle(const ShellDeck& deck) {
-  Points sum(deck.nodes.size(), Vec3::Zero());
+/// Means over a node's facets.
+struct NodeWalls {
+  Points normals;    // unit vectors
+  Points to_middle;  // from the node to the middle of the wall [length]
+};
+
+NodeWalls walls_of(const ShellDeck& deck) {
+  NodeWalls walls;
+  walls.normals.assign(deck.nodes.size(), Vec3::Zero());
+  walls.to_middle.assign(deck.nodes.size(), Vec3::Zero());
   std::vector<double> count(deck.nodes.size(), 0.0);
   for (std::size_t f = 0; f < deck.facets.size(); ++f) {
     const std::array<int, 6>& facet = deck.facets[f];
@@ -43,14 +51,16 @@ Points to_middle(const ShellDeck& deck) {
     const double offset = deck.sections[deck.section[f]].offset;
     const std::array<double, 6>& thickness = deck.thickness[f];
     for (std::size_t i = 0; i < facet.size(); ++i) {
-      sum[facet[i]] += offset * thickness[i] * normal;
+      walls.normals[facet[i]] += normal;
+      walls.to_middle[facet[i]] += offset * thickness[i] * normal;
       count[facet[i]] += 1.0;
     }
   }
-  for (std::size_t n = 0; n < sum.size(); ++n) {
-    sum[n] /= std::max(count[n], 1.0);
+  for (std::size_t n = 0; n < count.size(); ++n) {
+    walls.normals[n].normalize();
+    walls.to_middle[n] /= std::max(count[n], 1.0);
   }
-  return sum;
+  return walls;
 }
 
 /// Third axis along the wall's normal. CalculiX takes moments about two axes in
@@ -68,8 +78,15 @@ class ShellWriter {
   explicit ShellWriter(const ShellDeck& deck)
       : deck_(deck),
         set_names_(names_of(deck.sets)),
-        turned_(turned_nodes(deck)),
-        to_middle_(to_middle(deck)) {
+        walls_(walls_of(deck)),
+        held_(held_shell_nodes(deck, walls_.normals)) {
+    for (const auto& nodes : held_) {
+      for (const auto& [node, held] : nodes) {
+        if (held.frame) {
+          turned_.emplace(node, *held.frame);
+        }
+      }
+    }
     find_eccentric();
     for (std::size_t s = 0; s < deck.sections.size(); ++s) {
       even_.push_back(even_thickness(deck, static_cast<int>(s)));
@@ -84,8 +101,8 @@ class ShellWriter {
     axes();
     sections();
     nodal_thickness();
-    for (const DeckShellStep& step : deck_.steps) {
-      write_step(step);
+    for (std::size_t s = 0; s < deck_.steps.size(); ++s) {
+      write_step(deck_.steps[s], held_[s]);
     }
     return fmt::to_string(buffer_);
   }
@@ -99,19 +116,18 @@ class ShellWriter {
 
   /// Nodes beside their wall that forces act on, but those that are held.
   void find_eccentric() {
-    std::set<int> held;
-    for (const DeckShellStep& step : deck_.steps) {
-      for (const DeckShellSupport& support : step.supports) {
-        held.insert(support.nodes.begin(), support.nodes.end());
-      }
-    }
+    const auto is_held = [&](int node) {
+      return std::any_of(held_.begin(), held_.end(), [node](const auto& step) {
+        return step.contains(node);
+      });
+    };
     for (const DeckShellStep& step : deck_.steps) {
       for (Eigen::Index n = 0; n < step.nodal_forces.size() / 3; ++n) {
         const auto node = static_cast<int>(n);
         if (!step.nodal_forces.segment<3>(3 * n).isZero(0.0) &&
-            !to_middle_[node].isZero(0.0) && !held.contains(node)) {
+            !walls_.to_middle[node].isZero(0.0) && !is_held(node)) {
           eccentric_.insert(node);
-          turned_.emplace(node, frame_about(to_middle_[node]));
+          turned_.emplace(node, frame_about(walls_.normals[node]));
         }
       }
     }
@@ -233,16 +249,15 @@ class ShellWriter {
     }
   }
 
-  void write_step(const DeckShellStep& step) {
+  void write_step(const DeckShellStep& step,
+                  const std::map<int, HeldShellNode>& held) {
     add("** load case '{}'\n*STEP\n*STATIC, SOLVER=SPOOLES\n",
         one_line(step.name));
     add("*BOUNDARY, OP=NEW\n");
-    for (const DeckShellSupport& support : step.supports) {
-      for (const int node : support.nodes) {
-        for (std::size_t c = 0; c < support.fixed.size(); ++c) {
-          if (support.fixed[c]) {
-            add("{}, {}, {}\n", node + 1, c + 1, c + 1);
-          }
+    for (const auto& [node, own] : held) {
+      for (std::size_t c = 0; c < own.fixed.size(); ++c) {
+        if (own.fixed[c]) {
+          add("{}, {}, {}\n", node + 1, c + 1, c + 1);
         }
       }
     }
@@ -264,7 +279,7 @@ class ShellWriter {
     for (Eigen::Index n = 0; n < step.nodal_forces.size() / 3; ++n) {
       const auto node = static_cast<int>(n);
       Vec3 force = step.nodal_forces.segment<3>(3 * n);
-      Vec3 moment = force.cross(to_middle_[node]);
+      Vec3 moment = force.cross(walls_.to_middle[node]);
       if (const auto own = turned_.find(node); own != turned_.end()) {
         force = own->second.transpose() * force;
         moment = own->second.transpose() * moment;
@@ -303,8 +318,9 @@ class ShellWriter {
 
   const ShellDeck& deck_;
   std::vector<std::string> set_names_;
-  std::map<int, Mat3> turned_;  // nodes with a frame of their own
-  Points to_middle_;
+  NodeWalls walls_;
+  std::vector<std::map<int, HeldShellNode>> held_;  // per step
+  std::map<int, Mat3> turned_;               // nodes with a frame of their own
   std::set<int> eccentric_;                  // nodes whose forces have moments
   std::vector<std::optional<double>> even_;  // per section: its one thickness
   fmt::memory_buffer buffer_;

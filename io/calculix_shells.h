@@ -4,8 +4,9 @@
 /// Nodes and elements are numbered from 1 in the deck's order. Node sets are
 /// named after films and rims, element sets SHELL_0 ... after the sections;
 /// names as in calculix_inp.h. A section of one thickness has it, others take
-/// *NODAL THICKNESS. Nodes that are held along axes of their own have them by
-/// *TRANSFORM.
+/// *NODAL THICKNESS. Nodes that are held along axes of their own, or whose
+/// rotations are held in part, have frames by *TRANSFORM
+/// (calculix_shell_held.h).
 ///
 /// CalculiX makes wedges of S6 and ties a node to the middle of the wall, also
 /// where OFFSET puts the wall beside the nodes: what holds the node holds the
@@ -22,8 +23,8 @@
 namespace meniscus::io {
 
 /// The deck's text. Throws InvalidInput as check_shell_deck() and
-/// turned_nodes() do, and for two sections whose thicknesses follow the place
-/// and differ at a node.
+/// held_shell_nodes() do, and for two sections whose thicknesses follow the
+/// place and differ at a node.
 std::string calculix_shell_deck(const ShellDeck& deck);
 
 /// The same into a file; IoError.

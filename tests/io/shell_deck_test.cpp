@@ -82,9 +82,30 @@ TEST(ShellDeckTest, OneFrameANode) {
   turned << 0.6, -0.8, 0, 0.8, 0.6, 0, 0, 0, 1;
   slide.axes = turned;
   deck.steps[0].supports.push_back(slide);
-  EXPECT_EQ(error_of(deck), "");  // held altogether besides
   deck.steps.push_back({"other", {{{2}, {true}}}});
+  EXPECT_EQ(error_of(deck), "");  // held altogether besides
+  deck.steps[0].supports[0].nodes = {0, 6};
   EXPECT_THAT(error_of(deck), HasSubstr("load case 'other' holds node 3"));
+}
+
+// CalculiX has no rotation about the normal z: what is held beside it.
+TEST(ShellDeckTest, RotationsInPartAreHeldAboutTangents) {
+  const auto held = [](std::array<bool, 6> fixed) {
+    ShellDeck deck = square();
+    deck.sections[1].offset = 0.0;
+    deck.steps[0].supports = {{{2}, fixed}};
+    const std::string text = calculix_shell_deck(deck);
+    const std::size_t at = text.find("*BOUNDARY, OP=NEW\n") + 18;
+    return text.substr(at, text.find("*CLOAD") - at);
+  };
+  EXPECT_EQ(held({true, false, false, false, true, true}),
+            "3, 2, 2\n3, 4, 4\n");  // about y, the first axis of its frame
+  EXPECT_EQ(held({false, false, false, true, true, false}),
+            "3, 4, 4\n3, 5, 5\n");
+  EXPECT_EQ(held({true, true, true, false, false, true}),
+            "3, 1, 1\n3, 2, 2\n3, 3, 3\n");
+  EXPECT_EQ(held({false, false, false, true, true, true}),
+            "3, 4, 4\n3, 5, 5\n3, 6, 6\n");
 }
 
 TEST(ShellDeckTest, OneThicknessANode) {
