@@ -9,11 +9,11 @@
 #include "core/error.h"
 #include "evolve/datafile/fe_write.h"
 #include "evolve/start/wetted_faces.h"
-#include "io/calculix_shells.h"
 #include "io/gmsh_msh.h"
 #include "io/nastran_bdf.h"
-#include "io/nastran_shells.h"
 #include "io/obj.h"
+#include "io/shell_deck/calculix_shells.h"
+#include "io/shell_deck/nastran_shells.h"
 #include "io/stl.h"
 #include "io/three_mf.h"
 #include "pipeline/case_data/case_symmetry.h"
@@ -163,7 +163,7 @@ io::CalculixDeck deck(ExportJob& job) {
                     calculix_deck_of(job.input(), fields.inputs, fields.mesh));
 }
 
-io::ShellDeck shell_deck(ExportJob& job) {
+shell_deck::ShellDeck deck_of_shells(ExportJob& job) {
   const forward::EvaluationFields& fields = job.meshed();
   return with_notes(job,
                     shell_deck_of(job.input(), fields.inputs, *fields.shell));
@@ -171,7 +171,7 @@ io::ShellDeck shell_deck(ExportJob& job) {
 
 void inp(ExportJob& job, const fs::path& file) {
   if (job.meshed().shell) {
-    io::write_calculix_shells(file, shell_deck(job));
+    shell_deck::write_calculix_shells(file, deck_of_shells(job));
     return;
   }
   io::write_calculix_inp(file, job.meshed().mesh, deck(job));
@@ -179,7 +179,7 @@ void inp(ExportJob& job, const fs::path& file) {
 
 void bdf(ExportJob& job, const fs::path& file) {
   if (job.meshed().shell) {
-    io::write_nastran_shells(file, shell_deck(job));
+    shell_deck::write_nastran_shells(file, deck_of_shells(job));
     return;
   }
   io::write_nastran_bdf(file, job.meshed().mesh, deck(job));

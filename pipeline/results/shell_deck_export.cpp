@@ -13,14 +13,14 @@ namespace meniscus::results {
 
 namespace {
 
-io::DeckNodeSet node_set(std::string name, std::vector<int> nodes) {
+shell_deck::DeckNodeSet node_set(std::string name, std::vector<int> nodes) {
   std::sort(nodes.begin(), nodes.end());
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
   return {std::move(name), std::move(nodes)};
 }
 
-std::vector<io::DeckNodeSet> sets_of(const shells::ShellPart& part) {
-  std::vector<io::DeckNodeSet> sets;
+std::vector<shell_deck::DeckNodeSet> sets_of(const shells::ShellPart& part) {
+  std::vector<shell_deck::DeckNodeSet> sets;
   const TetMesh& skin = part.skin;
   for (std::size_t label = 0; label < skin.labels.size(); ++label) {
     std::vector<int> nodes;
@@ -44,9 +44,9 @@ std::vector<io::DeckNodeSet> sets_of(const shells::ShellPart& part) {
 }
 
 /// Nodes that are held alike, together.
-std::vector<io::DeckShellSupport> supports_of(
+std::vector<shell_deck::DeckShellSupport> supports_of(
     const std::vector<shell::NodeSupport>& supports) {
-  std::vector<io::DeckShellSupport> result;
+  std::vector<shell_deck::DeckShellSupport> result;
   for (const shell::NodeSupport& support : supports) {
     std::optional<Mat3> axes;
     if (support.axes) {
@@ -61,9 +61,9 @@ std::vector<io::DeckShellSupport> supports_of(
   return result;
 }
 
-io::DeckShellStep shell_step_of(const shells::ShellPart& part,
-                                const loads::LoadCase& load_case) {
-  io::DeckShellStep step{.name = load_case.name};
+shell_deck::DeckShellStep shell_step_of(const shells::ShellPart& part,
+                                        const loads::LoadCase& load_case) {
+  shell_deck::DeckShellStep step{.name = load_case.name};
   step.supports = supports_of(shells::node_supports(part, load_case));
   const shell::ShellLoads all = shells::shell_actions(part, load_case).loads;
   if (!all.edges.empty() || all.nodal.size() != 0) {
@@ -86,10 +86,10 @@ io::DeckShellStep shell_step_of(const shells::ShellPart& part,
 
 }  // namespace
 
-io::ShellDeck shell_deck_of(const case_data::Case& input,
-                            const case_data::EvaluatedCase& inputs,
-                            const shells::ShellPart& part) {
-  io::ShellDeck deck{
+shell_deck::ShellDeck shell_deck_of(const case_data::Case& input,
+                                    const case_data::EvaluatedCase& inputs,
+                                    const shells::ShellPart& part) {
+  shell_deck::ShellDeck deck{
       .comments = {"case: " + input.title, "units: " + input.units.name},
       .nodes = part.mesh.nodes,
       .facets = part.mesh.facets,

@@ -14,7 +14,7 @@
 
 #include "fea/elastic/elasticity.h"
 #include "fea/shell/shell_system.h"
-#include "io/calculix_shells.h"
+#include "io/shell_deck/calculix_shells.h"
 #include "tests/support/calculix.h"
 #include "tests/support/mapped_shapes.h"
 #include "tests/support/shapes.h"
@@ -201,11 +201,11 @@ Measured by_calculix(const std::string& deck, int nodes, int node,
           watch.seconds()};
 }
 
-io::ShellDeck deck_of(const Part& part,
-                      const shell_shapes::MappedShell& shell) {
-  io::ShellDeck deck{.nodes = shell.mesh.nodes,
-                     .facets = shell.mesh.facets,
-                     .section = shell.mesh.section};
+shell_deck::ShellDeck deck_of(const Part& part,
+                              const shell_shapes::MappedShell& shell) {
+  shell_deck::ShellDeck deck{.nodes = shell.mesh.nodes,
+                             .facets = shell.mesh.facets,
+                             .section = shell.mesh.section};
   deck.thickness.resize(deck.facets.size());
   for (auto& row : deck.thickness) {
     row.fill(part.thickness);
@@ -215,7 +215,7 @@ io::ShellDeck deck_of(const Part& part,
                                  .youngs_modulus = part.material.youngs_modulus,
                                  .poisson_ratio = part.material.poisson_ratio,
                                  .density = part.material.density}}};
-  io::DeckShellStep step{.name = "load", .gravity = part.gravity};
+  shell_deck::DeckShellStep step{.name = "load", .gravity = part.gravity};
   for (const shell::NodeSupport& support : supports_of(part, shell)) {
     step.supports.push_back({{support.node}, support.held});
   }
@@ -237,8 +237,8 @@ Measured calculix_s6(const Part& part, int cells) {
   const int node = shell.node(part.read_s, 0);
   const auto nodes = static_cast<int>(shell.mesh.nodes.size());
   return by_calculix(
-      only_print(io::calculix_shell_deck(deck_of(part, shell)), node), nodes,
-      node, part.component,
+      only_print(shell_deck::calculix_shell_deck(deck_of(part, shell)), node),
+      nodes, node, part.component,
       wedge_unknowns(cells, 3L * cells * cells + 2L * cells));
 }
 
@@ -246,7 +246,7 @@ Measured calculix_s6(const Part& part, int cells) {
 Measured calculix_s8r(const Part& part, int cells) {
   const shell_shapes::MappedShell shell = mesh_of(part, cells);
   const int node = shell.node(part.read_s, 0);
-  std::string text = io::calculix_shell_deck(deck_of(part, shell));
+  std::string text = shell_deck::calculix_shell_deck(deck_of(part, shell));
   const std::size_t from = text.find("*ELEMENT");
   const std::size_t to = text.find("*ELSET, ELSET=EALL");
   std::string elements = "*ELEMENT, TYPE=S8R, ELSET=SHELL_0\n";

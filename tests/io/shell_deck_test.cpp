@@ -1,4 +1,4 @@
-#include "io/shell_deck.h"
+#include "io/shell_deck/shell_deck.h"
 
 #include <sstream>
 #include <string>
@@ -7,10 +7,10 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
-#include "io/calculix_shells.h"
-#include "io/nastran_shells.h"
+#include "io/shell_deck/calculix_shells.h"
+#include "io/shell_deck/nastran_shells.h"
 
-namespace meniscus::io {
+namespace meniscus::shell_deck {
 namespace {
 
 using ::testing::HasSubstr;
@@ -23,7 +23,7 @@ ShellDeck square() {
   deck.facets = {{0, 1, 2, 4, 5, 6}, {1, 3, 2, 7, 8, 5}};
   deck.section = {0, 1};
   deck.thickness = {{1, 1, 1, 1, 1, 1}, {1, 1, 1, 1, 1, 1}};
-  const DeckMaterial steel{"steel", 210e3, 0.3, 7.85e-9};
+  const io::DeckMaterial steel{"steel", 210e3, 0.3, 7.85e-9};
   deck.sections = {{"one", steel, 0.0}, {"two", steel, 0.5}};
   deck.sets = {{"plate/rim:root", {0, 2, 6}}};
   deck.steps = {{"pull", {{{0, 2, 6}, {true, true, true}}}}};
@@ -129,4 +129,4 @@ TEST(ShellDeckTest, WhatDoesNotFitIsNamed) {
 }
 
 }  // namespace
-}  // namespace meniscus::io
+}  // namespace meniscus::shell_deck

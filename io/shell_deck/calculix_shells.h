@@ -18,9 +18,9 @@
 #include <filesystem>
 #include <string>
 
-#include "io/shell_deck.h"
+#include "io/shell_deck/shell_deck.h"
 
-namespace meniscus::io {
+namespace meniscus::shell_deck {
 
 /// The deck's text. Throws InvalidInput as check_shell_deck() and
 /// held_shell_nodes() do, and for two sections whose thicknesses follow the
@@ -31,4 +31,4 @@ std::string calculix_shell_deck(const ShellDeck& deck);
 void write_calculix_shells(const std::filesystem::path& path,
                            const ShellDeck& deck);
 
-}  // namespace meniscus::io
+}  // namespace meniscus::shell_deck

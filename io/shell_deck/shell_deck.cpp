@@ -1,10 +1,10 @@
-#include "io/shell_deck.h"
+#include "io/shell_deck/shell_deck.h"
 
 #include <fmt/format.h>
 
 #include "core/error.h"
 
-namespace meniscus::io {
+namespace meniscus::shell_deck {
 
 namespace {
 
@@ -124,4 +124,4 @@ std::map<int, Mat3> turned_nodes(const ShellDeck& deck) {
   return turned;
 }
 
-}  // namespace meniscus::io
+}  // namespace meniscus::shell_deck

@@ -1,4 +1,4 @@
-#include "io/calculix_shells.h"
+#include "io/shell_deck/calculix_shells.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,10 +14,10 @@
 #include "core/error.h"
 #include "io/calculix_material.h"
 #include "io/calculix_names.h"
-#include "io/calculix_shell_held.h"
 #include "io/file_notes.h"
+#include "io/shell_deck/calculix_shell_held.h"
 
-namespace meniscus::io {
+namespace meniscus::shell_deck {
 
 namespace {
 
@@ -29,7 +29,7 @@ std::vector<std::string> names_of(const std::vector<Row>& rows) {
   for (const Row& row : rows) {
     names.push_back(row.name);
   }
-  return deck_names(names);
+  return io::deck_names(names);
 }
 
 /// Means over a node's facets.
@@ -112,7 +112,7 @@ class ShellWriter {
   void add(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
     fmt::format_to(out(), format, std::forward<Arguments>(arguments)...);
   }
-  Out out() { return std::back_inserter(buffer_); }
+  io::Out out() { return std::back_inserter(buffer_); }
 
   /// Nodes beside their wall that forces act on, but those that are held.
   void find_eccentric() {
@@ -135,16 +135,16 @@ class ShellWriter {
 
   void head() {
     for (const std::string& comment : deck_.comments) {
-      add("** {}\n", one_line(comment));
+      add("** {}\n", io::one_line(comment));
     }
     for (std::size_t k = 0; k < set_names_.size(); ++k) {
-      add("** surface '{}' is NSET {}\n", one_line(deck_.sets[k].name),
+      add("** surface '{}' is NSET {}\n", io::one_line(deck_.sets[k].name),
           set_names_[k]);
     }
     for (std::size_t s = 0; s < deck_.sections.size(); ++s) {
       const DeckShellSection& section = deck_.sections[s];
-      add("** shell '{}' is ELSET SHELL_{}, of '{}'\n", one_line(section.name),
-          s, one_line(section.material.name));
+      add("** shell '{}' is ELSET SHELL_{}, of '{}'\n",
+          io::one_line(section.name), s, io::one_line(section.material.name));
       if (section.offset != 0.0) {
         add("** its wall lies on one side of the nodes: CalculiX holds and "
             "prints its middle\n");
@@ -182,7 +182,7 @@ class ShellWriter {
   void sets() {
     for (std::size_t k = 0; k < set_names_.size(); ++k) {
       add("*NSET, NSET={}\n", set_names_[k]);
-      write_ids(out(), deck_.sets[k].nodes);
+      io::write_ids(out(), deck_.sets[k].nodes);
     }
   }
 
@@ -201,7 +201,7 @@ class ShellWriter {
     for (std::size_t k = 0; k < frames.size(); ++k) {
       const auto& [Q, nodes] = frames[k];
       add("*NSET, NSET=AXES_{}\n", k);
-      write_ids(out(), nodes);
+      io::write_ids(out(), nodes);
       add("*TRANSFORM, NSET=AXES_{}, TYPE=R\n"
           "{:.12e}, {:.12e}, {:.12e}, {:.12e}, {:.12e}, {:.12e}\n",
           k, Q(0, 0), Q(1, 0), Q(2, 0), Q(0, 1), Q(1, 1), Q(2, 1));
@@ -212,7 +212,7 @@ class ShellWriter {
     for (std::size_t s = 0; s < deck_.sections.size(); ++s) {
       const DeckShellSection& section = deck_.sections[s];
       const std::string material = fmt::format("MATERIAL_{}", s);
-      add("{}", constants_text(section.material, material));
+      add("{}", io::constants_text(section.material, material));
       // OFFSET is of the nodes over the middle.
       add("*SHELL SECTION, ELSET=SHELL_{}, MATERIAL={}, OFFSET={:g}{}\n{:.12e}"
           "\n",
@@ -252,7 +252,7 @@ class ShellWriter {
   void write_step(const DeckShellStep& step,
                   const std::map<int, HeldShellNode>& held) {
     add("** load case '{}'\n*STEP\n*STATIC, SOLVER=SPOOLES\n",
-        one_line(step.name));
+        io::one_line(step.name));
     add("*BOUNDARY, OP=NEW\n");
     for (const auto& [node, own] : held) {
       for (std::size_t c = 0; c < own.fixed.size(); ++c) {
@@ -338,4 +338,4 @@ void write_calculix_shells(const std::filesystem::path& path,
   write_file(path, calculix_shell_deck(deck));
 }
 
-}  // namespace meniscus::io
+}  // namespace meniscus::shell_deck

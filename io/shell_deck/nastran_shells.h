@@ -11,9 +11,9 @@
 #include <filesystem>
 #include <string>
 
-#include "io/shell_deck.h"
+#include "io/shell_deck/shell_deck.h"
 
-namespace meniscus::io {
+namespace meniscus::shell_deck {
 
 /// The file's text. Throws InvalidInput as check_shell_deck() and
 /// turned_nodes() do.
@@ -23,4 +23,4 @@ std::string nastran_shell_bdf(const ShellDeck& deck);
 void write_nastran_shells(const std::filesystem::path& path,
                           const ShellDeck& deck);
 
-}  // namespace meniscus::io
+}  // namespace meniscus::shell_deck

@@ -11,12 +11,12 @@
 #include "core/types.h"
 #include "io/analysis_deck.h"
 
-namespace meniscus::io {
+namespace meniscus::shell_deck {
 
 /// How facets' walls lie and what they are made of.
 struct DeckShellSection {
   std::string name;
-  DeckMaterial material;  // isotropic
+  io::DeckMaterial material;  // isotropic
   /// Middle of the wall over the nodes along the facet's normal, in
   /// thicknesses.
   double offset = 0.0;
@@ -47,7 +47,7 @@ struct DeckShellStep {
   VectorX nodal_forces;  // [force], 3 per node, or empty
   std::vector<DeckFacetPressure> pressures;
   Vec3 gravity = Vec3::Zero();  // force per mass [length/time^2]
-  std::optional<DeckSpin> spin;
+  std::optional<io::DeckSpin> spin;
 };
 
 struct ShellDeck {
@@ -74,4 +74,4 @@ std::optional<double> even_thickness(const ShellDeck& deck, int section);
 /// three displacements, or rotations, together.
 std::map<int, Mat3> turned_nodes(const ShellDeck& deck);
 
-}  // namespace meniscus::io
+}  // namespace meniscus::shell_deck

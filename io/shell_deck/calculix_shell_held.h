@@ -7,9 +7,9 @@
 #include <optional>
 #include <vector>
 
-#include "io/shell_deck.h"
+#include "io/shell_deck/shell_deck.h"
 
-namespace meniscus::io {
+namespace meniscus::shell_deck {
 
 /// Components of a node, 0: held; along its frame, or x y z without one.
 struct HeldShellNode {
@@ -27,4 +27,4 @@ struct HeldShellNode {
 std::vector<std::map<int, HeldShellNode>> held_shell_nodes(
     const ShellDeck& deck, const Points& normals);
 
-}  // namespace meniscus::io
+}  // namespace meniscus::shell_deck

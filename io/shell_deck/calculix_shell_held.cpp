@@ -1,4 +1,4 @@
-#include "io/calculix_shell_held.h"
+#include "io/shell_deck/calculix_shell_held.h"
 
 #include <cmath>
 #include <string>
@@ -8,7 +8,7 @@
 
 #include "core/error.h"
 
-namespace meniscus::io {
+namespace meniscus::shell_deck {
 
 namespace {
 
@@ -190,4 +190,4 @@ std::vector<std::map<int, HeldShellNode>> held_shell_nodes(
   return steps;
 }
 
-}  // namespace meniscus::io
+}  // namespace meniscus::shell_deck

@@ -1,4 +1,4 @@
-#include "io/nastran_shells.h"
+#include "io/shell_deck/nastran_shells.h"
 
 #include <map>
 #include <numbers>
@@ -13,7 +13,7 @@
 #include "io/nastran_fields.h"
 #include "io/nastran_material.h"
 
-namespace meniscus::io {
+namespace meniscus::shell_deck {
 
 namespace {
 
@@ -26,8 +26,8 @@ constexpr int gravity_set(int k) { return 10 * k + 2; }
 constexpr int turning_set(int k) { return 10 * k + 3; }
 
 /// What the LOAD card of a step puts together.
-Fields sets_of_load(const DeckShellStep& step, int k) {
-  Fields sets;
+io::Fields sets_of_load(const DeckShellStep& step, int k) {
+  io::Fields sets;
   if (!step.pressures.empty() ||
       (step.nodal_forces.size() != 0 && !step.nodal_forces.isZero(0.0))) {
     sets.push_back(number(node_set(k)));
@@ -41,9 +41,9 @@ Fields sets_of_load(const DeckShellStep& step, int k) {
   return sets;
 }
 
-void append_vector(const Vec3& x, Fields& fields) {
+void append_vector(const Vec3& x, io::Fields& fields) {
   for (int i = 0; i < 3; ++i) {
-    fields.push_back(nastran_real(x[i]));
+    fields.push_back(io::nastran_real(x[i]));
   }
 }
 
@@ -70,7 +70,7 @@ class ShellBulk {
 
  private:
   void comment(const std::string& line) {
-    text_ += "$ " + plain_text(line) + "\n";
+    text_ += "$ " + io::plain_text(line) + "\n";
   }
 
   void case_control() {
@@ -80,7 +80,7 @@ class ShellBulk {
     text_ += "SOL 101\nCEND\n";
     for (const std::string& line : deck_.comments) {
       if (line.starts_with("case: ")) {
-        text_ += "TITLE = " + plain_text(line.substr(6)) + "\n";
+        text_ += "TITLE = " + io::plain_text(line.substr(6)) + "\n";
       }
     }
     text_ += "ECHO = NONE\n";
@@ -91,13 +91,13 @@ class ShellBulk {
       }
       comment(fmt::format("SET {} is the nodes of surface '{}'", k + 1,
                           deck_.sets[k].name));
-      text_ += case_set(static_cast<int>(k) + 1, nodes);
+      text_ += io::case_set(static_cast<int>(k) + 1, nodes);
     }
     text_ += "DISPLACEMENT = ALL\nSPCFORCES = ALL\nSTRESS(CORNER) = ALL\n";
     for (std::size_t s = 0; s < deck_.steps.size(); ++s) {
       const int k = static_cast<int>(s) + 1;
       text_ += fmt::format("SUBCASE {}\n  SUBTITLE = {}\n  SPC = {}\n", k,
-                           plain_text(deck_.steps[s].name), k);
+                           io::plain_text(deck_.steps[s].name), k);
       if (!sets_of_load(deck_.steps[s], k).empty()) {
         text_ += fmt::format("  LOAD = {}\n", sum_set(k));
       }
@@ -112,11 +112,11 @@ class ShellBulk {
       }
       if (k == frames_.size()) {
         frames_.push_back(axes);
-        Fields fields = {number(static_cast<int>(k) + 1), "0"};
+        io::Fields fields = {number(static_cast<int>(k) + 1), "0"};
         append_vector(Vec3::Zero(), fields);
         append_vector(axes.col(2), fields);
         append_vector(axes.col(0), fields);
-        text_ += long_card("CORD2R", fields);
+        text_ += io::long_card("CORD2R", fields);
       }
       frame_of_[node] = static_cast<int>(k) + 1;
     }
@@ -124,13 +124,13 @@ class ShellBulk {
 
   void grid() {
     for (std::size_t n = 0; n < deck_.nodes.size(); ++n) {
-      Fields fields = {number(static_cast<int>(n) + 1), ""};
+      io::Fields fields = {number(static_cast<int>(n) + 1), ""};
       append_vector(deck_.nodes[n], fields);
       if (const auto at = frame_of_.find(static_cast<int>(n));
           at != frame_of_.end()) {
         fields.push_back(number(at->second));
       }
-      text_ += long_card("GRID", fields);
+      text_ += io::long_card("GRID", fields);
     }
   }
 
@@ -141,10 +141,10 @@ class ShellBulk {
       even_.push_back(even_thickness(deck_, static_cast<int>(s)));
       comment(fmt::format("shell '{}', of '{}'", section.name,
                           section.material.name));
-      text_ += long_card(
+      text_ += io::long_card(
           "PSHELL",
-          {id, id, even_[s] ? nastran_real(*even_[s]) : "", id, "", id});
-      text_ += isotropic_card(section.material, static_cast<int>(s) + 1);
+          {id, id, even_[s] ? io::nastran_real(*even_[s]) : "", id, "", id});
+      text_ += io::isotropic_card(section.material, static_cast<int>(s) + 1);
     }
   }
 
@@ -152,18 +152,18 @@ class ShellBulk {
   void elements() {
     for (std::size_t f = 0; f < deck_.facets.size(); ++f) {
       const int s = deck_.section[f];
-      Fields fields = {number(static_cast<int>(f) + 1), number(s + 1)};
+      io::Fields fields = {number(static_cast<int>(f) + 1), number(s + 1)};
       for (const int node : deck_.facets[f]) {
         fields.push_back(number(node + 1));
       }
       const Vec3 t(deck_.thickness[f].data());
       const double offset = deck_.sections[s].offset * t.mean();
       fields.insert(fields.end(),
-                    {"", offset != 0.0 ? nastran_real(offset) : ""});
+                    {"", offset != 0.0 ? io::nastran_real(offset) : ""});
       if (!even_[s]) {
         append_vector(t, fields);
       }
-      text_ += long_card("CTRIA6", fields);
+      text_ += io::long_card("CTRIA6", fields);
     }
   }
 
@@ -174,34 +174,35 @@ class ShellBulk {
       for (std::size_t c = 0; c < support.fixed.size(); ++c) {
         components += support.fixed[c] ? number(static_cast<int>(c) + 1) : "";
       }
-      Fields fields = {number(k), components};
+      io::Fields fields = {number(k), components};
       for (const int node : support.nodes) {
         fields.push_back(number(node + 1));
       }
       if (!components.empty()) {
-        text_ += short_card("SPC1", fields);
+        text_ += io::short_card("SPC1", fields);
       }
     }
-    const Fields sets = sets_of_load(step, k);
+    const io::Fields sets = sets_of_load(step, k);
     if (!sets.empty()) {
-      Fields load = {number(sum_set(k)), "1."};
+      io::Fields load = {number(sum_set(k)), "1."};
       for (const std::string& set : sets) {
         load.insert(load.end(), {"1.", set});
       }
-      text_ += short_card("LOAD", load);
+      text_ += io::short_card("LOAD", load);
     }
     for (Eigen::Index n = 0; n < step.nodal_forces.size() / 3; ++n) {
       const Vec3 force = step.nodal_forces.segment<3>(3 * n);
       if (!force.isZero(0.0)) {
-        Fields fields = {number(node_set(k)), number(static_cast<int>(n) + 1),
-                         "0", "1."};
+        io::Fields fields = {number(node_set(k)),
+                             number(static_cast<int>(n) + 1), "0", "1."};
         append_vector(force, fields);
-        text_ += long_card("FORCE", fields);
+        text_ += io::long_card("FORCE", fields);
       }
     }
     for (const DeckFacetPressure& load : step.pressures) {
-      text_ += long_card("PLOAD4", {number(node_set(k)), number(load.facet + 1),
-                                    nastran_real(load.pressure)});
+      text_ +=
+          io::long_card("PLOAD4", {number(node_set(k)), number(load.facet + 1),
+                                   io::nastran_real(load.pressure)});
     }
     body_loads(step, k);
   }
@@ -209,22 +210,22 @@ class ShellBulk {
   void body_loads(const DeckShellStep& step, int k) {
     if (!step.gravity.isZero(0.0)) {
       const double size = step.gravity.norm();
-      Fields fields = {number(gravity_set(k)), "0", nastran_real(size)};
+      io::Fields fields = {number(gravity_set(k)), "0", io::nastran_real(size)};
       append_vector(step.gravity / size, fields);
-      text_ += long_card("GRAV", fields);
+      text_ += io::long_card("GRAV", fields);
     }
     if (step.spin) {
       const int point = next_point_++;
-      Fields at = {number(point), ""};
+      io::Fields at = {number(point), ""};
       append_vector(step.spin->point, at);
       at.insert(at.end(), {"", "123456"});
-      text_ += long_card("GRID", at);
-      Fields fields = {
+      text_ += io::long_card("GRID", at);
+      io::Fields fields = {
           number(turning_set(k)), number(point), "0",
-          nastran_real(step.spin->rate / (2.0 * std::numbers::pi))};
+          io::nastran_real(step.spin->rate / (2.0 * std::numbers::pi))};
       append_vector(step.spin->axis.normalized(), fields);
       fields.emplace_back("1");
-      text_ += long_card("RFORCE", fields);
+      text_ += io::long_card("RFORCE", fields);
     }
   }
 
@@ -249,4 +250,4 @@ void write_nastran_shells(const std::filesystem::path& path,
   write_file(path, nastran_shell_bdf(deck));
 }
 
-}  // namespace meniscus::io
+}  // namespace meniscus::shell_deck
