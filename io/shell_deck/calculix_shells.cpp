@@ -26,6 +26,7 @@ constexpr double kOneThickness = 1e-9;  // relative, of rounding
 template <class Row>
 std::vector<std::string> names_of(const std::vector<Row>& rows) {
   std::vector<std::string> names;
+  names.reserve(rows.size());
   for (const Row& row : rows) {
     names.push_back(row.name);
   }

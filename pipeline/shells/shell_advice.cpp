@@ -53,6 +53,7 @@ std::vector<const curves::Curve*> curves_of(const films::FilmSystem& system,
 
 std::vector<double> parameters() {
   std::vector<double> t;
+  t.reserve(kCurvePoints);
   for (int k = 0; k < kCurvePoints; ++k) {
     t.push_back(static_cast<double>(k) / kCurvePoints);
   }
@@ -124,7 +125,7 @@ bool is_flat(const Points& points) {
     return true;
   }
   Vec3 normal = Vec3::Zero();
-  const Vec3 first = points.front();
+  const Vec3& first = points.front();
   for (std::size_t i = 2; i < points.size(); ++i) {
     const Vec3 n = (points[i - 1] - first).cross(points[i] - first);
     normal = n.norm() > normal.norm() ? n : normal;

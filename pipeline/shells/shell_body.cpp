@@ -165,6 +165,7 @@ std::vector<std::string> body_names(const ShellPart& part) {
   const std::set<int> used(part.skin.face_label.begin(),
                            part.skin.face_label.end());
   std::vector<std::string> names;
+  names.reserve(used.size());
   for (const int label : used) {
     names.push_back(part.skin.labels[label]);
   }
