@@ -31,6 +31,7 @@
 #include "pipeline/results/new_case.h"
 #include "pipeline/results/results.h"
 #include "pipeline/results/run_files.h"
+#include "pipeline/shells/shell_advice.h"
 #include "pipeline/store/stored_case.h"
 #include "pipeline/store/study_table.h"
 #include "report/output/run_pictures.h"
@@ -79,6 +80,9 @@ int check_command(const std::string& case_path, const CommonArguments& common) {
   const case_data::Case& input = *reading.input;
   for (const std::string& remark : input.remarks) {
     std::printf("%s\n", remark.c_str());
+  }
+  for (const std::string& advice : shells::shell_advice(input)) {
+    std::printf("%s\n", advice.c_str());
   }
   std::string text = fmt::format(
       "{}: {}: {}, {}, {}, {}, {}", case_path,

@@ -18,14 +18,6 @@ namespace meniscus::io {
 
 namespace {
 
-void write_ids(Out out, const std::vector<int>& ids) {
-  constexpr std::size_t kPerLine = 12;  // CalculiX reads at most 16
-  for (std::size_t i = 0; i < ids.size(); ++i) {
-    const bool last = i + 1 == ids.size() || i % kPerLine == kPerLine - 1;
-    fmt::format_to(out, "{}{}", ids[i] + 1, last ? "\n" : ", ");
-  }
-}
-
 class DeckWriter {
  public:
   DeckWriter(const TetMesh& mesh, const CalculixDeck& deck)

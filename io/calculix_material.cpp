@@ -34,8 +34,8 @@ std::string orientation_text(const DeckOrthotropic& m, std::size_t region) {
 
 }  // namespace
 
-std::string material_text(const DeckMaterial& material, const std::string& name,
-                          std::size_t region) {
+std::string constants_text(const DeckMaterial& material,
+                           const std::string& name) {
   std::string text =
       fmt::format("*MATERIAL, NAME={}\n", name) + elastic_text(material);
   if (material.density > 0.0) {
@@ -46,6 +46,12 @@ std::string material_text(const DeckMaterial& material, const std::string& name,
     text += fmt::format("*EXPANSION, TYPE=ORTHO\n{:.12e}, {:.12e}, {:.12e}\n",
                         alpha[0], alpha[1], alpha[2]);
   }
+  return text;
+}
+
+std::string material_text(const DeckMaterial& material, const std::string& name,
+                          std::size_t region) {
+  std::string text = constants_text(material, name);
   std::string oriented;
   if (material.orthotropic) {
     text += orientation_text(*material.orthotropic, region);

@@ -7,8 +7,12 @@
 
 namespace meniscus::io {
 
-/// *MATERIAL with its constants, orientation if it has one, and the section of
-/// element set REGION_<region>. `name`: as CalculiX takes it.
+/// *MATERIAL with its constants. `name`: as CalculiX takes it.
+std::string constants_text(const DeckMaterial& material,
+                           const std::string& name);
+
+/// The same, its orientation if it has one, and the section of element set
+/// REGION_<region>.
 std::string material_text(const DeckMaterial& material, const std::string& name,
                           std::size_t region);
 

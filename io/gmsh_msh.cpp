@@ -75,10 +75,11 @@ class MshWriter {
     std::map<std::tuple<int, int, int>, std::vector<int>> faces;
     for (int f = 0; f < mesh_.face_count(); ++f) {
       const auto at = static_cast<std::size_t>(f);
+      const int behind =
+          mesh_.face_element.empty() ? -1 : region(mesh_.face_element[at]);
       const int front =
           mesh_.face_front.empty() ? -1 : region(mesh_.face_front[at]);
-      faces[{mesh_.face_label[at], region(mesh_.face_element[at]), front}]
-          .push_back(f);
+      faces[{mesh_.face_label[at], behind, front}].push_back(f);
     }
     for (auto& [key, list] : faces) {
       const auto [label, behind, front] = key;

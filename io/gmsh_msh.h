@@ -28,7 +28,8 @@ struct MshOptions {
 /// Elements of the mesh's order and, of the same order, its faces. Node and
 /// element n has number n + 1, faces follow the elements. Physical volumes are
 /// named after the regions, physical surfaces after the labels; the surface of
-/// one name between the same bodies is one discrete entity. Throws InvalidInput
+/// one name between the same bodies is one discrete entity. Of a mesh without
+/// elements the faces alone. Throws InvalidInput
 /// for fields that do not fit, IoError.
 void write_msh(const std::filesystem::path& path, const TetMesh& mesh,
                const MshOptions& options = {});

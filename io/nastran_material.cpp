@@ -92,10 +92,15 @@ std::string nastran_material(const DeckMaterial& material, int id) {
                        number);
   }
   return text + short_card("PSOLID", {number, number}) +
-         long_card("MAT1", {number, nastran_real(material.youngs_modulus), "",
-                            nastran_real(material.poisson_ratio),
-                            unless_zero(material.density),
-                            unless_zero(material.thermal_expansion[0])});
+         isotropic_card(material, id);
+}
+
+std::string isotropic_card(const DeckMaterial& material, int id) {
+  return long_card(
+      "MAT1",
+      {std::to_string(id), nastran_real(material.youngs_modulus), "",
+       nastran_real(material.poisson_ratio), unless_zero(material.density),
+       unless_zero(material.thermal_expansion[0])});
 }
 
 }  // namespace meniscus::io

@@ -10,4 +10,7 @@ namespace meniscus::io {
 /// PSOLID and MAT1, or MAT9 with its axes in CORD2R, all of number `id`.
 std::string nastran_material(const DeckMaterial& material, int id);
 
+/// The card MAT1 of an isotropic material.
+std::string isotropic_card(const DeckMaterial& material, int id);
+
 }  // namespace meniscus::io

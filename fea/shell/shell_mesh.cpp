@@ -78,6 +78,17 @@ ShellMesh shell_mesh(const QuadraticSurface& surface, const VectorX& thickness,
   return mesh;
 }
 
+std::array<double, 6> facet_thicknesses(const ShellMesh& mesh,
+                                        std::size_t facet) {
+  const Vec3& t = mesh.thickness[facet];
+  return {t[0],
+          t[1],
+          t[2],
+          0.5 * (t[0] + t[1]),
+          0.5 * (t[1] + t[2]),
+          0.5 * (t[2] + t[0])};
+}
+
 std::vector<LaminateLaw> laminate_laws(const std::vector<Section>& sections) {
   std::vector<LaminateLaw> laws;
   laws.reserve(sections.size());

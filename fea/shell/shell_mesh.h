@@ -35,6 +35,10 @@ struct ShellMesh {
 ShellMesh shell_mesh(const QuadraticSurface& surface, const VectorX& thickness,
                      int section = 0);
 
+/// At a facet's six nodes [length].
+std::array<double, 6> facet_thicknesses(const ShellMesh& mesh,
+                                        std::size_t facet);
+
 /// laminate_law() of each.
 std::vector<LaminateLaw> laminate_laws(const std::vector<Section>& sections);
 

@@ -1,6 +1,7 @@
 #include "pipeline/forward/part_warnings.h"
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include <fmt/format.h>
@@ -9,6 +10,7 @@
 #include "core/error.h"
 #include "fea/functionals/thickness.h"
 #include "fea/stress/peak_stress.h"
+#include "pipeline/shells/shell_advice.h"
 
 namespace meniscus::forward {
 
@@ -65,9 +67,21 @@ std::string thin_warning(const case_data::Case& input, const TetMesh& mesh,
              : fmt::format(
                    "one element through the material at the peak stress {}: it "
                    "may be too low, and by more than its +-; take a shorter "
-                   "resolution.fea (now {:.4g} {})",
+                   "resolution.fea (now {:.4g} {}), or analyse the films of "
+                   "thin walls as [shells]",
                    fmt::join(places, ", "), input.resolution.fea,
                    input.units.length);
+}
+
+std::map<std::string, Points> points_by_film(const SurfaceMesh& film) {
+  std::map<std::string, Points> points;
+  for (std::size_t f = 0; f < film.facets.size(); ++f) {
+    Points& own = points[film.labels[film.facet_label[f]]];
+    for (const int corner : film.facets[f]) {
+      own.push_back(film.points[corner]);
+    }
+  }
+  return points;
 }
 
 }  // namespace
@@ -103,10 +117,20 @@ std::vector<std::string> part_warnings(
           100.0 * largest / size));
     }
   }
-  std::string thin =
-      fields.shell ? "" : thin_warning(input, fields.mesh, stress);
+  if (fields.shell) {
+    for (std::string& thick :
+         shells::thick_shell_warnings(input, *fields.shell)) {
+      warnings.push_back(std::move(thick));
+    }
+    return warnings;
+  }
+  std::string thin = thin_warning(input, fields.mesh, stress);
   if (!thin.empty()) {
     warnings.push_back(std::move(thin));
+  }
+  for (std::string& advice : shells::thin_wall_advice(
+           input, fields.inputs, points_by_film(fields.film))) {
+    warnings.push_back(std::move(advice));
   }
   return warnings;
 }

@@ -11,8 +11,9 @@ namespace meniscus::forward {
 
 /// Sentences for stress above yield (the place with the least safety factor,
 /// each body against its own material), for displacements that are not small
-/// against the part, for peaks without limit, and for those where the material
-/// is one element thick.
+/// against the part, for peaks without limit, for those where the material is
+/// one element thick, and for walls and shells that are better the other
+/// (pipeline/shells/shell_advice.h).
 /// `stress`: stress_figures() of the fields, every load case.
 std::vector<std::string> part_warnings(
     const case_data::Case& input, const EvaluationFields& fields,

@@ -13,6 +13,7 @@
 #include "pipeline/forward/fillets.h"
 #include "pipeline/forward/walls.h"
 #include "pipeline/forward/worst_cases.h"
+#include "pipeline/shells/shell_body.h"
 #include "pipeline/store/refreeze.h"
 #include "pipeline/store/stored_case.h"
 #include "pipeline/store/study_store.h"
@@ -74,6 +75,9 @@ const SettledFilm& ExportJob::film() {
 }
 
 SurfaceMesh ExportJob::bodies_surface() {
+  if (!input_.shells.empty()) {
+    return shells::body_surface(shells::shell_body(*meshed().shell));
+  }
   const SettledFilm& settled = film();
   const Points& points = settled.state.points;
   return whole::whole_surface(
@@ -137,8 +141,11 @@ io::FileNotes ExportJob::notes() const {
   return notes;
 }
 
-std::vector<std::string> ExportJob::body_names() const {
+std::vector<std::string> ExportJob::body_names() {
   std::vector<std::string> names;
+  if (!input_.shells.empty()) {
+    return shells::body_names(*meshed().shell);
+  }
   for (const case_data::BodyEntry& body : case_data::solid_bodies(input_)) {
     names.push_back(body.name);
   }

@@ -44,7 +44,7 @@ class ExportJob {
   const SettledFilm& film();
 
   /// The closed surface of that film with the bodies on its sides, at the
-  /// film's own resolution.
+  /// film's own resolution; of shells the bodies of their walls.
   SurfaceMesh bodies_surface();
 
   /// The mesh and the case's numbers there: nothing is solved for it. Throws
@@ -58,8 +58,9 @@ class ExportJob {
   /// Program, title, units, name of the case and the answer's design.
   io::FileNotes notes() const;
 
-  /// Of the bodies of material, in the order of the mesh's regions.
-  std::vector<std::string> body_names() const;
+  /// Of the bodies of material, in the order of the mesh's regions; of shells,
+  /// the films.
+  std::vector<std::string> body_names();
 
  private:
   Options options_;

@@ -12,6 +12,8 @@
 #include "io/gmsh_msh.h"
 #include "io/nastran_bdf.h"
 #include "io/obj.h"
+#include "io/shell_deck/calculix_shells.h"
+#include "io/shell_deck/nastran_shells.h"
 #include "io/stl.h"
 #include "io/three_mf.h"
 #include "pipeline/case_data/case_symmetry.h"
@@ -21,6 +23,8 @@
 #include "pipeline/results/make_ledger.h"
 #include "pipeline/results/results.h"
 #include "pipeline/results/run_files.h"
+#include "pipeline/results/shell_deck_export.h"
+#include "pipeline/shells/shell_body.h"
 #include "pipeline/step_parts/export_step.h"
 #include "pipeline/step_parts/wall_step.h"
 #include "pipeline/study/ledger.h"
@@ -33,12 +37,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void stl(ExportJob& job, const fs::path& file) {
+/// Of shells the bodies of their walls.
+SurfaceMesh printed_surface(ExportJob& job) {
+  if (!job.input().shells.empty()) {
+    return job.bodies_surface();
+  }
   const SettledFilm& film = job.film();
-  io::write_stl(file,
-                whole::whole_surface(
-                    job.input(), forward::boundary_of(job.inputs(), film.model,
-                                                      film.state.points)),
+  return whole::whole_surface(
+      job.input(),
+      forward::boundary_of(job.inputs(), film.model, film.state.points));
+}
+
+void stl(ExportJob& job, const fs::path& file) {
+  io::write_stl(file, printed_surface(job),
                 {.name = job.input().title,
                  .unit = job.input().units.length,
                  .program = job.notes().program});
@@ -136,10 +147,9 @@ void faceted_step(ExportJob& job, const fs::path& file) {
   step(job, file, true);
 }
 
-io::CalculixDeck deck(ExportJob& job) {
-  const forward::EvaluationFields& fields = job.meshed();
-  io::CalculixDeck deck =
-      calculix_deck_of(job.input(), fields.inputs, fields.mesh);
+/// The program before the deck's own comments, case and design after them.
+template <class Deck>
+Deck with_notes(const ExportJob& job, Deck deck) {
   const io::FileNotes notes = job.notes();
   deck.comments.insert(deck.comments.begin(), notes.program);
   deck.comments.insert(deck.comments.end(), notes.lines.begin(),
@@ -147,12 +157,44 @@ io::CalculixDeck deck(ExportJob& job) {
   return deck;
 }
 
+io::CalculixDeck deck(ExportJob& job) {
+  const forward::EvaluationFields& fields = job.meshed();
+  return with_notes(job,
+                    calculix_deck_of(job.input(), fields.inputs, fields.mesh));
+}
+
+shell_deck::ShellDeck deck_of_shells(ExportJob& job) {
+  const forward::EvaluationFields& fields = job.meshed();
+  return with_notes(job,
+                    shell_deck_of(job.input(), fields.inputs, *fields.shell));
+}
+
 void inp(ExportJob& job, const fs::path& file) {
+  if (job.meshed().shell) {
+    shell_deck::write_calculix_shells(file, deck_of_shells(job));
+    return;
+  }
   io::write_calculix_inp(file, job.meshed().mesh, deck(job));
 }
 
 void bdf(ExportJob& job, const fs::path& file) {
+  if (job.meshed().shell) {
+    shell_deck::write_nastran_shells(file, deck_of_shells(job));
+    return;
+  }
   io::write_nastran_bdf(file, job.meshed().mesh, deck(job));
+}
+
+/// Of shells the largest of both faces and the middle.
+std::vector<double> nodal_von_mises(const forward::EvaluationFields& fields,
+                                    std::size_t load_case) {
+  using W = shell::WallStress;
+  return fields.shell
+             ? shells::nodal_von_mises(*fields.shell, load_case,
+                                       {&W::negative, &W::middle, &W::positive})
+             : stress::nodal_stress(fields.mesh,
+                                    fields.stresses[load_case].recovered)
+                   .von_mises;
 }
 
 void msh(ExportJob& job, const fs::path& file) {
@@ -160,19 +202,25 @@ void msh(ExportJob& job, const fs::path& file) {
   io::MshOptions options{
       .notes = job.notes(), .regions = job.body_names(), .fields = {}};
   const UnitSystem& units = job.input().units;
-  for (std::size_t k = 0; k < fields.stresses.size(); ++k) {
+  for (std::size_t k = 0; k < fields.solution.displacements.size(); ++k) {
     const std::string& load_case = fields.inputs.load_cases[k].name;
     const VectorX& u = fields.solution.displacements[k];
     options.fields.push_back(
         {.name = fmt::format("displacement, {} [{}]", load_case, units.length),
          .components = 3,
          .values = {u.begin(), u.end()}});
+    if (fields.shell) {
+      const VectorX turned =
+          shells::rotations_of(fields.shell->cases[k].displacement);
+      options.fields.push_back(
+          {.name = fmt::format("rotation, {} [rad]", load_case),
+           .components = 3,
+           .values = {turned.begin(), turned.end()}});
+    }
     options.fields.push_back(
         {.name = fmt::format("von Mises, {} [{}]", load_case, units.pressure),
          .components = 1,
-         .values =
-             stress::nodal_stress(fields.mesh, fields.stresses[k].recovered)
-                 .von_mises});
+         .values = nodal_von_mises(fields, k)});
   }
   io::write_msh(file, fields.mesh, options);
 }
@@ -195,13 +243,14 @@ const ExportFormat& format_named(const std::string& name) {
                                  export_format_names()));
 }
 
-/// Those that closed surfaces or tetrahedra are needed for.
+/// CAD's solids are films or walls.
 void refuse_shells(const case_data::Case& input, const ExportFormat& format) {
-  if (!input.shells.empty() && format.write != vtu && format.write != fe) {
+  if (!input.shells.empty() &&
+      (format.write == smooth_step || format.write == faceted_step)) {
     throw InvalidInput(fmt::format(
-        "format '{}' is of solids, and shells.{} is none; there are vtu (its "
-        "facets and fields) and fe (the film), or take [walls] in place of "
-        "[shells]",
+        "format '{}' is of solids, and shells.{} is none; take [walls] in "
+        "place of [shells] for it, or export stl, 3mf or obj, the body of its "
+        "thickness",
         format.name, input.shells.front().name));
   }
 }

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <optional>
 
 #include <fmt/format.h>
@@ -24,6 +25,7 @@
 #include "pipeline/results/export_part.h"
 #include "pipeline/results/multiplier_figures.h"
 #include "pipeline/results/run_files.h"
+#include "pipeline/shells/shell_body.h"
 #include "pipeline/store/refreeze.h"
 #include "pipeline/store/stored_case.h"
 #include "pipeline/store/study_table.h"
@@ -141,13 +143,7 @@ io::Field thickness_field(const case_data::Case& input,
   field.values.assign(mesh.nodes.size(), 0.0);
   std::vector<double> count(mesh.nodes.size(), 0.0);
   for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
-    const Vec3& t = mesh.thickness[f];
-    const std::array<double, 6> at = {t[0],
-                                      t[1],
-                                      t[2],
-                                      0.5 * (t[0] + t[1]),
-                                      0.5 * (t[1] + t[2]),
-                                      0.5 * (t[2] + t[0])};
+    const std::array<double, 6> at = shell::facet_thicknesses(mesh, f);
     for (std::size_t i = 0; i < at.size(); ++i) {
       field.values[mesh.facets[f][i]] += at[i];
       count[mesh.facets[f][i]] += 1.0;
@@ -159,30 +155,46 @@ io::Field thickness_field(const case_data::Case& input,
   return field;
 }
 
+/// Adds those of a load case, their names with an ending.
+using AddFields = std::function<void(
+    std::size_t load_case, const std::string& ending, io::MeshFields& out)>;
+
 /// Those of one load case by plain names, the worst where `load_case` is none;
 /// all by their own where there are several.
-io::MeshFields part_fields(const case_data::Case& input,
+io::MeshFields case_fields(const case_data::Case& input,
                            const forward::EvaluationFields& fields,
-                           const std::string& load_case = "") {
+                           const std::string& load_case, const AddFields& add) {
   std::size_t worst = forward::worst_load_case(fields);
   const std::vector<loads::LoadCase>& cases = fields.inputs.load_cases;
   for (std::size_t k = 0; k < cases.size(); ++k) {
     worst = cases[k].name == load_case ? k : worst;
   }
   io::MeshFields out;
-  const auto add = fields.shell ? add_shell_fields : add_node_fields;
-  add(input, fields, worst, "", out);
+  add(worst, "", out);
   for (std::size_t k = 0; cases.size() > 1 && k < cases.size(); ++k) {
-    add(input, fields, k, "_" + cases[k].name, out);
+    add(k, "_" + cases[k].name, out);
   }
-  if (fields.shell) {
-    out.points.push_back(thickness_field(input, fields.shell->mesh));
-  } else {
+  if (!fields.shell) {
     out.cells = element_fields(input, fields, worst);
   }
   out.notes = {{"title", input.title},
                {"length_unit", input.units.length},
                {"load_case", cases[worst].name}};
+  return out;
+}
+
+io::MeshFields part_fields(const case_data::Case& input,
+                           const forward::EvaluationFields& fields,
+                           const std::string& load_case = "") {
+  io::MeshFields out = case_fields(
+      input, fields, load_case,
+      [&](std::size_t k, const std::string& ending, io::MeshFields& to) {
+        (fields.shell ? add_shell_fields : add_node_fields)(input, fields, k,
+                                                            ending, to);
+      });
+  if (fields.shell) {
+    out.points.push_back(thickness_field(input, fields.shell->mesh));
+  }
   for (const forward::ModeShape& mode : fields.modes) {
     out.points.push_back(
         node_field(mode.name, "", 3, mode.shape.data(),
@@ -190,6 +202,50 @@ io::MeshFields part_fields(const case_data::Case& input,
     out.notes.emplace_back(mode.name, mode.value);
   }
   return out;
+}
+
+/// Of a shell's body, each face with its own stress.
+io::MeshFields body_fields(const case_data::Case& input,
+                           const forward::EvaluationFields& fields,
+                           const shells::ShellBody& body,
+                           const std::string& load_case) {
+  const shells::ShellPart& part = *fields.shell;
+  io::MeshFields out = case_fields(
+      input, fields, load_case,
+      [&](std::size_t k, const std::string& ending, io::MeshFields& to) {
+        const VectorX u =
+            shells::body_displacements(body, part.cases[k].displacement);
+        to.points.push_back(node_field("displacement" + ending,
+                                       input.units.length, 3, u.data(),
+                                       static_cast<std::size_t>(u.size())));
+        to.points.push_back(shell_field(input, "von_mises" + ending,
+                                        shells::body_von_mises(body, part, k)));
+      });
+  for (const forward::ModeShape& mode : fields.modes) {
+    io::Field field = node_field(mode.name, "", 3, nullptr, 0);
+    for (const shells::ShellBody::Point& at : body.points) {
+      const Vec3 u = mode.shape.segment<3>(Eigen::Index{3} * at.node);
+      field.values.insert(field.values.end(), u.begin(), u.end());
+    }
+    out.points.push_back(std::move(field));
+    out.notes.emplace_back(mode.name, mode.value);
+  }
+  return out;
+}
+
+/// The boundary of the part, or of the body that a shell stands for.
+void write_surface(const std::filesystem::path& file,
+                   const case_data::Case& input,
+                   const forward::EvaluationFields& fields,
+                   const std::string& load_case = "") {
+  if (fields.shell) {
+    const shells::ShellBody body = shells::shell_body(*fields.shell);
+    io::write_boundary_vtp(file, body.mesh,
+                           body_fields(input, fields, body, load_case));
+  } else {
+    io::write_boundary_vtp(file, fields.mesh,
+                           part_fields(input, fields, load_case));
+  }
 }
 
 Json value_map(const std::vector<std::string>& names, const VectorX& values) {
@@ -451,8 +507,7 @@ void write_part_surface(const std::filesystem::path& file,
   const std::optional<forward::EvaluationFields> whole =
       whole::whole_part(input, fields);
   const forward::EvaluationFields& shown = whole ? *whole : fields;
-  io::write_boundary_vtp(file, shown.mesh,
-                         part_fields(input, shown, load_case));
+  write_surface(file, input, shown, load_case);
 }
 
 std::vector<std::string> mesh_names(const case_data::Case& input) {
@@ -478,15 +533,17 @@ std::vector<std::string> write_meshes(const case_data::Case& input,
   const std::optional<forward::EvaluationFields> whole =
       whole::whole_part(input, fields);
   const forward::EvaluationFields& shown = whole ? *whole : fields;
-  const io::MeshFields part = part_fields(input, shown);
-  io::write_vtu(folder / "part.vtu", shown.mesh, part);
-  io::write_boundary_vtp(folder / "part_surface.vtp", shown.mesh, part);
+  io::write_vtu(folder / "part.vtu", shown.mesh, part_fields(input, shown));
+  write_surface(folder / "part_surface.vtp", input, shown);
   const auto write_part_stl = [&](const SurfaceMesh& mesh, double edge) {
     io::write_stl(folder / stl_name(edge), whole::whole_surface(input, mesh),
                   {.name = input.title, .unit = input.units.length});
   };
   if (input.resolution.export_edges.empty()) {
-    write_part_stl(fields.boundary, input.resolution.film);
+    write_part_stl(fields.shell
+                       ? shells::body_surface(shells::shell_body(*fields.shell))
+                       : fields.boundary,
+                   input.resolution.film);
   }
   for (const double edge : input.resolution.export_edges) {
     const std::string prevented = what_prevents(

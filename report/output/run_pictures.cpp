@@ -13,6 +13,7 @@
 #include "pipeline/case_data/response_entries.h"
 #include "pipeline/forward/stress_figures.h"
 #include "pipeline/frames/film_frames.h"
+#include "pipeline/shells/shell_body.h"
 #include "pipeline/whole/whole_part.h"
 #include "report/picture/picture.h"
 
@@ -255,19 +256,25 @@ std::vector<picture::PictureJob> all_pictures(
   return jobs;
 }
 
+/// Of a shell the body that it stands for.
 picture::PictureSurface part_surface(const case_data::Case& input,
                                      const forward::EvaluationFields& fields,
                                      std::size_t load_case) {
-  io::BoundarySurface boundary = io::boundary_surface(fields.mesh);
-  using W = shell::WallStress;
-  const std::vector<double> nodal =
-      fields.shell
-          ? shells::nodal_von_mises(*fields.shell, load_case,
-                                    {&W::negative, &W::middle, &W::positive})
-          : stress::nodal_stress(fields.mesh,
-                                 fields.stresses[load_case].recovered)
-                .von_mises;
-  const VectorX& u = fields.solution.displacements[load_case];
+  VectorX u = fields.solution.displacements[load_case];
+  std::vector<double> nodal;
+  io::BoundarySurface boundary;
+  if (fields.shell) {
+    const shells::ShellPart& part = *fields.shell;
+    const shells::ShellBody body = shells::shell_body(part);
+    u = shells::body_displacements(body, part.cases[load_case].displacement);
+    nodal = shells::body_von_mises(body, part, load_case);
+    boundary = io::boundary_surface(body.mesh);
+  } else {
+    nodal =
+        stress::nodal_stress(fields.mesh, fields.stresses[load_case].recovered)
+            .von_mises;
+    boundary = io::boundary_surface(fields.mesh);
+  }
   picture::PictureSurface surface;
   surface.mesh = std::move(boundary.mesh);
   surface.length_unit = input.units.length;

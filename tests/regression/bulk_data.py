@@ -7,7 +7,7 @@ import re
 # Cards that the decks of this program may have, and no others.
 KNOWN = {"PARAM", "GRDSET", "GRID", "CTETRA", "PSOLID", "MAT1", "SPC1", "LOAD",
          "FORCE", "PLOAD4", "GRAV", "RFORCE", "TEMP", "TEMPD",
-         "SPOINT", "CELAS2", "MPC", "MAT9", "CORD2R"}
+         "SPOINT", "CELAS2", "MPC", "MAT9", "CORD2R", "CTRIA6", "PSHELL"}
 # CalculiX's order of the 21 constants of an anisotropic material: pairs of
 # stresses as Nastran counts them (11 22 33 12 23 31).
 ANISO = [(0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2), (0, 3), (1, 3), (2, 3),
@@ -54,6 +54,7 @@ class Deck:
         self.gravity, self.spin = {}, {}
         self.axes, self.springs, self.equations = {}, [], []
         self.scalars = []
+        self.shells, self.shell_properties, self.frames = {}, {}, {}
         self.heat = collections.defaultdict(dict)
 
 
@@ -85,6 +86,19 @@ def read(text):
             raise ValueError(f"card {name}")
         if name == "GRID":
             deck.grids[int(f[0])] = [real(x) for x in f[2:5]]
+            if f[5]:
+                deck.frames[int(f[0])] = int(f[5])
+        elif name == "CTRIA6":
+            t = [real(x) for x in f[10:13] if x]
+            if f[8]:
+                raise ValueError("a material angle")
+            deck.shells[int(f[0])] = (int(f[1]), [int(n) for n in f[2:8]],
+                                      real(f[9]) if f[9] else 0.0, t)
+        elif name == "PSHELL":
+            if f[1] != f[3] or f[1] != f[5]:
+                raise ValueError("a shell without bending or shear")
+            deck.shell_properties[int(f[0])] = (
+                int(f[1]), real(f[2]) if f[2] else None)
         elif name == "CTETRA":
             deck.elements[int(f[0])] = (int(f[1]), [int(n) for n in f[2:12]])
         elif name == "PSOLID":
@@ -123,8 +137,9 @@ def read(text):
             deck.forces[int(f[0])].append(
                 (int(f[1]), [scale * real(x) for x in f[4:7]]))
         elif name == "PLOAD4":
+            on, off = (*f, "", "", "", "")[6:8]  # of shells there are none
             deck.pressures[int(f[0])].append(
-                (int(f[1]), real(f[2]), int(f[6]), int(f[7])))
+                (int(f[1]), real(f[2]), int(on or 0), int(off or 0)))
         elif name == "GRAV":
             deck.gravity[int(f[0])] = (real(f[2]), [real(x) for x in f[3:6]])
         elif name == "RFORCE":
@@ -149,6 +164,7 @@ def calculix_deck(deck, subcase):
         out += [f"{e}, " + ", ".join(map(str, nodes))
                 for e, (p, nodes) in deck.elements.items() if p == pid]
         out += material_lines(deck, pid, mid)
+    out += shell_lines(deck)
     for e, stiffness, node in deck.springs:
         out += [f"*ELEMENT, TYPE=SPRING1, ELSET=S{e}", f"{e}, {node}",
                 f"*SPRING, ELSET=S{e}", "1", f"{stiffness:.12e}"]
@@ -170,6 +186,31 @@ def calculix_deck(deck, subcase):
         out += ["*TEMPERATURE", *(f"{n}, {t:.12e}" for n, t in heat.items())]
     out += ["*NODE PRINT, NSET=NALL", "U", "*END STEP", ""]
     return "\n".join(out)
+
+
+def shell_lines(deck):
+    """S6 elements; a section's thickness, or the nodes'."""
+    out, nodal = [], {}
+    for pid, (mid, even) in deck.shell_properties.items():
+        out.append(f"*ELEMENT, TYPE=S6, ELSET=P{pid}")
+        for e, (p, nodes, offset, t) in deck.shells.items():
+            if p != pid:
+                continue
+            if offset or bool(t) == bool(even):
+                raise ValueError(f"CTRIA6 {e}: no thickness, two, or beside")
+            out.append(f"{e}, " + ", ".join(map(str, nodes)))
+            t = t or [even] * 3
+            t = [*t, *((t[k] + t[(k + 1) % 3]) / 2 for k in range(3))]
+            nodal.update(zip(nodes, t))
+        young, poisson, density, _ = deck.materials[mid]
+        out += [f"*MATERIAL, NAME=M{mid}", "*ELASTIC",
+                f"{young:.12e}, {poisson:.12e}", "*DENSITY", f"{density:.12e}",
+                f"*SHELL SECTION, ELSET=P{pid}, MATERIAL=M{mid}, "
+                "NODAL THICKNESS", "1."]
+    if nodal:
+        out += ["*NODAL THICKNESS",
+                *(f"{n}, {t:.12e}" for n, t in nodal.items())]
+    return out
 
 
 def material_lines(deck, pid, mid):
@@ -207,6 +248,9 @@ def load_lines(deck, part):
     if part in deck.pressures:
         out.append("*DLOAD")
         for e, pressure, on, off in deck.pressures[part]:
+            if e in deck.shells:  # along the normal of G1 G2 G3
+                out.append(f"{e}, P, {pressure:.12e}")
+                continue
             corner = deck.elements[e][1].index(off)
             if on not in deck.elements[e][1][:4] or on == off:
                 raise ValueError(f"PLOAD4 of element {e}")
@@ -216,12 +260,12 @@ def load_lines(deck, part):
         out.append("*DLOAD")
         out += [f"P{pid}, GRAV, {size:.12e}, " +
                 ", ".join(f"{x:.12e}" for x in axis)
-                for pid in deck.properties]
+                for pid in [*deck.properties, *deck.shell_properties]]
     if part in deck.spin:
         point, turns, axis = deck.spin[part]
         rate = 2 * math.pi * turns
         numbers = [rate * rate, *deck.grids[point], *axis]
         out.append("*DLOAD")
         out += [f"P{pid}, CENTRIF, " + ", ".join(f"{x:.12e}" for x in numbers)
-                for pid in deck.properties]
+                for pid in [*deck.properties, *deck.shell_properties]]
     return out

@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 """Shells from outside: films of a thickness are run, differentiated, studied
 and refused where they must be."""
+import csv
 import math
 import os
 import random
 import unittest
 
-from program import ProgramTest
+from program import ROOT, ProgramTest
 
 # Gas keeps the film a cylinder. In the middle, seven lengths of its edge effect
 # from either ring, `swell` is half of the radial displacement times the mean of
@@ -729,9 +730,24 @@ constraints = [{ response = "stable", min = 1.5 }]
         _, _, out = self.run_case(STRIP, "--no-pictures")
         for form in ("vtu", "fe"):
             self.expect(self.call("export", out, "--format", form), 0)
-        for form in ("stl", "step", "inp", "bdf", "msh"):
-            done = self.expect(self.call("export", out, "--format", form), 2)
-            self.assertIn("shells.strip", done.stderr)
+
+    # Members stand in pairs of one shape under 2 and 3.5 kN.
+    def test_analyses_thirty_thin_struts(self):
+        out = self.folder / "struts"
+        self.expect(self.call(
+            "run", ROOT / "cases" / "strut_family" / "shells.toml", "--jobs",
+            "2", "--no-pictures", "--no-report", "--out", out), 0)
+        rows = list(csv.DictReader((out / "family.csv").open()))
+        self.assertEqual(len(rows), 30)
+        masses = set()
+        for light, heavy in zip(rows[::2], rows[1::2]):
+            self.assertEqual((light["load"], heavy["load"]), ("2000", "3500"))
+            self.assertEqual(light["mass"], heavy["mass"])
+            masses.add(light["mass"])
+            for name in ("deflection", "stress"):
+                ratio = float(heavy[name]) / float(light[name])
+                self.assertLess(abs(ratio / 1.75 - 1), 1e-9)
+        self.assertEqual(len(masses), 15)
 
     def test_says_what_it_does_not_do(self):
         wrong = [

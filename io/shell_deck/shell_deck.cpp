@@ -1,0 +1,127 @@
+#include "io/shell_deck/shell_deck.h"
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+
+namespace meniscus::shell_deck {
+
+namespace {
+
+void check_facets(const ShellDeck& deck) {
+  const std::size_t facets = deck.facets.size();
+  if (facets == 0 || deck.section.size() != facets ||
+      deck.thickness.size() != facets) {
+    throw InvalidInput(fmt::format(
+        "the deck has {} facets, {} sections and {} thicknesses of facets",
+        facets, deck.section.size(), deck.thickness.size()));
+  }
+  const auto nodes = static_cast<int>(deck.nodes.size());
+  const auto sections = static_cast<int>(deck.sections.size());
+  for (std::size_t f = 0; f < facets; ++f) {
+    for (const int node : deck.facets[f]) {
+      if (node < 0 || node >= nodes) {
+        throw InvalidInput(fmt::format("facet {} of the deck has node {} of {}",
+                                       f, node, nodes));
+      }
+    }
+    if (deck.section[f] < 0 || deck.section[f] >= sections) {
+      throw InvalidInput(
+          fmt::format("facet {} of the deck has section {} of {}", f,
+                      deck.section[f], sections));
+    }
+  }
+}
+
+void check_step(const ShellDeck& deck, const DeckShellStep& step) {
+  const auto nodes = static_cast<int>(deck.nodes.size());
+  const auto facets = static_cast<int>(deck.facets.size());
+  if (step.nodal_forces.size() != 0 &&
+      step.nodal_forces.size() != Eigen::Index{3} * nodes) {
+    throw InvalidInput(fmt::format(
+        "step '{}' of the deck has {} nodal forces; {} nodes have 3 each",
+        step.name, step.nodal_forces.size(), nodes));
+  }
+  if (step.supports.empty()) {
+    throw InvalidInput(fmt::format(
+        "step '{}' of the deck has no support; hold a rim", step.name));
+  }
+  for (const DeckShellSupport& support : step.supports) {
+    for (const int node : support.nodes) {
+      if (node < 0 || node >= nodes) {
+        throw InvalidInput(
+            fmt::format("step '{}' of the deck holds node {} of {}", step.name,
+                        node, nodes));
+      }
+    }
+  }
+  for (const DeckFacetPressure& load : step.pressures) {
+    if (load.facet < 0 || load.facet >= facets) {
+      throw InvalidInput(
+          fmt::format("step '{}' of the deck presses facet {} of {}", step.name,
+                      load.facet, facets));
+    }
+  }
+}
+
+}  // namespace
+
+void check_shell_deck(const ShellDeck& deck) {
+  check_facets(deck);
+  for (const DeckShellStep& step : deck.steps) {
+    check_step(deck, step);
+  }
+}
+
+std::optional<double> even_thickness(const ShellDeck& deck, int section) {
+  std::optional<double> even;
+  for (std::size_t f = 0; f < deck.facets.size(); ++f) {
+    if (deck.section[f] == section) {
+      even = even.value_or(deck.thickness[f][0]);
+      for (const double t : deck.thickness[f]) {
+        if (t != *even) {
+          return {};
+        }
+      }
+    }
+  }
+  return even;
+}
+
+namespace {
+
+/// Three components held together are the same along any axes.
+bool turns_with_axes(const DeckShellSupport& support) {
+  const std::array<bool, 6>& f = support.fixed;
+  return !(f[0] == f[1] && f[1] == f[2] && f[3] == f[4] && f[4] == f[5]);
+}
+
+}  // namespace
+
+std::map<int, Mat3> turned_nodes(const ShellDeck& deck) {
+  std::map<int, Mat3> turned;
+  std::map<int, Mat3> held;  // plain ones, too
+  for (const DeckShellStep& step : deck.steps) {
+    for (const DeckShellSupport& support : step.supports) {
+      if (!turns_with_axes(support)) {
+        continue;
+      }
+      const Mat3 axes = support.axes.value_or(Mat3::Identity());
+      for (const int node : support.nodes) {
+        if (held.emplace(node, axes).first->second != axes) {
+          throw InvalidInput(fmt::format(
+              "load case '{}' holds node {} along other axes than another "
+              "support or load case does; a deck has one frame a node: export "
+              "a case with one of them",
+              step.name, node + 1));
+        }
+        if (support.axes) {
+          turned.emplace(node, axes);
+        }
+      }
+    }
+  }
+  return turned;
+}
+
+}  // namespace meniscus::shell_deck

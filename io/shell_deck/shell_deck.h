@@ -1,0 +1,77 @@
+/// A shell as a static job for another solver, beside analysis_deck.h's of
+/// tetrahedra: what the writers of its decks (CalculiX, Nastran) are given.
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/types.h"
+#include "io/analysis_deck.h"
+
+namespace meniscus::shell_deck {
+
+/// How facets' walls lie and what they are made of.
+struct DeckShellSection {
+  std::string name;
+  io::DeckMaterial material;  // isotropic
+  /// Middle of the wall over the nodes along the facet's normal, in
+  /// thicknesses.
+  double offset = 0.0;
+};
+
+struct DeckNodeSet {
+  std::string name;
+  std::vector<int> nodes;  // from 0, ascending
+};
+
+/// Components that are held at 0: displacements 1 2 3, rotations about 1 2 3.
+struct DeckShellSupport {
+  std::vector<int> nodes;  // from 0
+  std::array<bool, 6> fixed = {};
+  std::optional<Mat3> axes = {};  // unit vectors, one a column; else x y z
+};
+
+/// On a facet, positive along its normal [pressure].
+struct DeckFacetPressure {
+  int facet = 0;
+  double pressure = 0.0;
+};
+
+/// One load case; nothing carries over from the step before.
+struct DeckShellStep {
+  std::string name;
+  std::vector<DeckShellSupport> supports;
+  VectorX nodal_forces;  // [force], 3 per node, or empty
+  std::vector<DeckFacetPressure> pressures;
+  Vec3 gravity = Vec3::Zero();  // force per mass [length/time^2]
+  std::optional<io::DeckSpin> spin;
+};
+
+struct ShellDeck {
+  std::vector<std::string> comments;  // case, units, version; one line each
+  Points nodes;                       // [length]
+  std::vector<std::array<int, 6>> facets;  // corners, middles (01) (12) (20)
+  std::vector<int> section;                // one per facet
+  std::vector<std::array<double, 6>> thickness;  // at each facet's nodes
+  std::vector<DeckShellSection> sections;
+  std::vector<DeckNodeSet> sets;  // films, rims
+  std::vector<DeckShellStep> steps;
+};
+
+/// Throws InvalidInput, naming facet, node or step, for what is missing or does
+/// not fit.
+void check_shell_deck(const ShellDeck& deck);
+
+/// The one thickness of a section's facets, where they have one.
+std::optional<double> even_thickness(const ShellDeck& deck, int section);
+
+/// Axes of the nodes that a step holds along axes of their own. Throws
+/// InvalidInput, naming step and node, where a deck cannot say it: a node has
+/// one frame in all steps, and is held elsewhere along others only with all
+/// three displacements, or rotations, together.
+std::map<int, Mat3> turned_nodes(const ShellDeck& deck);
+
+}  // namespace meniscus::shell_deck

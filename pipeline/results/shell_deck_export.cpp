@@ -1,0 +1,118 @@
+#include "pipeline/results/shell_deck_export.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <utility>
+
+#include "fea/element/local_axes.h"
+#include "fea/shell/shell_loads.h"
+#include "pipeline/shells/shell_model.h"
+
+namespace meniscus::results {
+
+namespace {
+
+shell_deck::DeckNodeSet node_set(std::string name, std::vector<int> nodes) {
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  return {std::move(name), std::move(nodes)};
+}
+
+std::vector<shell_deck::DeckNodeSet> sets_of(const shells::ShellPart& part) {
+  std::vector<shell_deck::DeckNodeSet> sets;
+  const TetMesh& skin = part.skin;
+  for (std::size_t label = 0; label < skin.labels.size(); ++label) {
+    std::vector<int> nodes;
+    for (int f = 0; f < skin.face_count(); ++f) {
+      if (skin.face_label[f] == static_cast<int>(label)) {
+        nodes.insert(nodes.end(), skin.face(f).begin(), skin.face(f).end());
+      }
+    }
+    if (!nodes.empty()) {
+      sets.push_back(node_set(skin.labels[label], std::move(nodes)));
+    }
+  }
+  for (const auto& [name, rim] : part.rims) {
+    std::vector<int> nodes;
+    for (const std::array<int, 3>& edge : rim) {
+      nodes.insert(nodes.end(), edge.begin(), edge.end());
+    }
+    sets.push_back(node_set(name, std::move(nodes)));
+  }
+  return sets;
+}
+
+/// Nodes that are held alike, together.
+std::vector<shell_deck::DeckShellSupport> supports_of(
+    const std::vector<shell::NodeSupport>& supports) {
+  std::vector<shell_deck::DeckShellSupport> result;
+  for (const shell::NodeSupport& support : supports) {
+    std::optional<Mat3> axes;
+    if (support.axes) {
+      axes = element::unit_axes(*support.axes);
+    }
+    if (result.empty() || result.back().fixed != support.held ||
+        result.back().axes != axes) {
+      result.push_back({.fixed = support.held, .axes = axes});
+    }
+    result.back().nodes.push_back(support.node);
+  }
+  return result;
+}
+
+shell_deck::DeckShellStep shell_step_of(const shells::ShellPart& part,
+                                        const loads::LoadCase& load_case) {
+  shell_deck::DeckShellStep step{.name = load_case.name};
+  step.supports = supports_of(shells::node_supports(part, load_case));
+  const shell::ShellLoads all = shells::shell_actions(part, load_case).loads;
+  if (!all.edges.empty() || all.nodal.size() != 0) {
+    shell::ShellLoads forces;
+    forces.edges = all.edges;
+    forces.nodal = all.nodal;
+    // Without moments: neither rims nor films carry any at nodes.
+    step.nodal_forces = shells::displacements_of(
+        shell::nodal_forces(part.mesh, part.sections, forces));
+  }
+  for (const shell::FacetPressure& p : all.pressures) {
+    step.pressures.push_back({p.facet, p.pressure});
+  }
+  step.gravity = all.gravity;
+  if (all.spin) {
+    step.spin = io::DeckSpin{all.spin->point, all.spin->axis, all.spin->rate};
+  }
+  return step;
+}
+
+}  // namespace
+
+shell_deck::ShellDeck shell_deck_of(const case_data::Case& input,
+                                    const case_data::EvaluatedCase& inputs,
+                                    const shells::ShellPart& part) {
+  shell_deck::ShellDeck deck{
+      .comments = {"case: " + input.title, "units: " + input.units.name},
+      .nodes = part.mesh.nodes,
+      .facets = part.mesh.facets,
+      .section = part.mesh.section,
+      .sets = sets_of(part)};
+  for (std::size_t f = 0; f < part.mesh.facets.size(); ++f) {
+    deck.thickness.push_back(shell::facet_thicknesses(part.mesh, f));
+  }
+  for (std::size_t s = 0; s < input.shells.size(); ++s) {
+    const element::Material& material = inputs.materials[s];
+    deck.sections.push_back(
+        {.name = input.shells[s].name,
+         .material = {.name = material.name,
+                      .youngs_modulus = material.youngs_modulus,
+                      .poisson_ratio = material.poisson_ratio,
+                      .density = material.density},
+         .offset = part.sections[s].offset});
+  }
+  // Of a load from any direction, which shells refuse, there are more.
+  for (std::size_t k = 0; k < input.load_cases.size(); ++k) {
+    deck.steps.push_back(shell_step_of(part, inputs.load_cases[k]));
+  }
+  return deck;
+}
+
+}  // namespace meniscus::results
