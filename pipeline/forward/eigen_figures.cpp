@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/timer.h"
-#include "fea/shell/shell_mode_stress.h"
+#include "fea/shell_modes/shell_mode_stress.h"
 #include "pipeline/forward/worst_cases.h"
 #include "pipeline/shells/shell_eigen.h"
 

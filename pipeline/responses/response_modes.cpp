@@ -8,7 +8,7 @@
 #include "fea/modes/eigenvalue_bound.h"
 #include "fea/modes/mode_shapes.h"
 #include "fea/modes/modes.h"
-#include "fea/shell/shell_mode_works.h"
+#include "fea/shell_modes/shell_mode_works.h"
 #include "pipeline/shells/shell_eigen.h"
 
 namespace meniscus::responses {

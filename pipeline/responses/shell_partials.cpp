@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
-#include "fea/shell/shell_mode_works.h"
 #include "fea/shell/shell_moments.h"
 #include "fea/shell/shell_norm.h"
+#include "fea/shell_modes/shell_mode_works.h"
 #include "pipeline/responses/response_partials.h"
 #include "pipeline/shells/shell_part.h"
 

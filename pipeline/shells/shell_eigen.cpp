@@ -1,6 +1,6 @@
 #include "pipeline/shells/shell_eigen.h"
 
-#include "fea/shell/shell_modes.h"
+#include "fea/shell_modes/shell_modes.h"
 #include "pipeline/case_data/case_entries.h"
 
 namespace meniscus::shells {

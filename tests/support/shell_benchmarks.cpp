@@ -6,8 +6,8 @@
 #include <Eigen/LU>
 
 #include "core/math/gauss_rule.h"
-#include "fea/shell/shell_modes.h"
 #include "fea/shell/shell_system.h"
+#include "fea/shell_modes/shell_modes.h"
 
 namespace meniscus::shell_benchmarks {
 

@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "core/math/dense.h"
-#include "fea/shell/shell_modes.h"
+#include "fea/shell_modes/shell_modes.h"
 #include "tests/support/shell_benchmarks.h"
 
 namespace meniscus::shell_buckling_test {

@@ -1,8 +1,8 @@
-#include "fea/shell/shell_mode_works.h"
+#include "fea/shell_modes/shell_mode_works.h"
 
 #include <gtest/gtest.h>
 
-#include "fea/shell/shell_modes.h"
+#include "fea/shell_modes/shell_modes.h"
 #include "tests/support/derivatives.h"
 #include "tests/support/shell_shapes.h"
 

@@ -1,4 +1,4 @@
-#include "fea/shell/shell_mode_works.h"
+#include "fea/shell_modes/shell_mode_works.h"
 
 #include <array>
 #include <cmath>
@@ -7,6 +7,7 @@
 #include "core/parallel_for.h"
 #include "fea/shell/facet_loads.h"
 #include "fea/shell/facet_second_work.h"
+#include "fea/shell/shell_supports.h"
 #include "fea/shell/taped_facet.h"
 
 namespace meniscus::shell {

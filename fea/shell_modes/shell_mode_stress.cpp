@@ -1,4 +1,4 @@
-#include "fea/shell/shell_mode_stress.h"
+#include "fea/shell_modes/shell_mode_stress.h"
 
 #include <array>
 #include <cmath>
@@ -9,6 +9,7 @@
 #include "core/parallel_for.h"
 #include "fea/element/stress_measures.h"
 #include "fea/shell/facet_loads.h"
+#include "fea/shell/shell_supports.h"
 
 namespace meniscus::shell {
 

@@ -1,4 +1,4 @@
-#include "fea/shell/shell_modes.h"
+#include "fea/shell_modes/shell_modes.h"
 
 #include <algorithm>
 #include <cmath>
