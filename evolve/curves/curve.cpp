@@ -3,6 +3,8 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <type_traits>
+#include <variant>
 
 #include <Eigen/Geometry>
 
@@ -112,7 +114,47 @@ double nearest_to_middle(const ParametricCurve& p, double a, double b) {
   return t;
 }
 
+bool equal(const Circle& a, const Circle& b) {
+  return a.center == b.center && a.normal == b.normal && a.radius == b.radius;
+}
+
+bool equal(const Ellipse& a, const Ellipse& b) {
+  return a.center == b.center && a.normal == b.normal && a.axis == b.axis &&
+         a.radius_1 == b.radius_1 && a.radius_2 == b.radius_2;
+}
+
+bool equal(const Rectangle& a, const Rectangle& b) {
+  return a.center == b.center && a.normal == b.normal && a.axis == b.axis &&
+         a.width == b.width && a.height == b.height &&
+         a.corner_radius == b.corner_radius;
+}
+
+bool equal(const Polygon& a, const Polygon& b) { return a.points == b.points; }
+
+bool equal(const ParametricCurve&, const ParametricCurve&) { return false; }
+
+bool equal(const Spline& a, const Spline& b) { return a.points == b.points; }
+
+bool equal(const Polyline& a, const Polyline& b) {
+  return a.corners == b.corners && a.via == b.via;
+}
+
+bool equal(const CurveCopy& a, const CurveCopy& b) {
+  return are_equal(a.of->shape, b.of->shape) && a.offset == b.offset &&
+         a.scale == b.scale && a.mirror == b.mirror && a.angle == b.angle &&
+         a.axis == b.axis && a.about == b.about && a.move == b.move;
+}
+
 }  // namespace
+
+bool are_equal(const CurveShape& a, const CurveShape& b) {
+  return a.index() == b.index() &&
+         std::visit(
+             [&](const auto& one) {
+               return equal(one, std::get<std::decay_t<decltype(one)>>(b));
+             },
+             a);
+}
 
 CurveJet jet_at(const CurveShape& shape, double t) {
   if (const auto* p = std::get_if<ParametricCurve>(&shape)) {

@@ -98,6 +98,9 @@ struct Curve {
   std::vector<int> free_sides = {};
 };
 
+/// Of the same kind and numbers. Expressions are not looked at: false.
+bool are_equal(const CurveShape& a, const CurveShape& b);
+
 /// Throws InvalidInput, naming the curve and the value, for a shape that is no
 /// curve: radius or side not above 0, zero normal, fewer than three points,
 /// two equal neighbours, an arc through points on a line, an offset that leaves

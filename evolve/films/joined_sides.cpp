@@ -64,12 +64,38 @@ double nearest_place(const curves::Curve& curve, const Vec3& place) {
   return nearest ? *nearest : nearest_parameter(curve.shape, place, 0.0);
 }
 
-/// A curve that holds films which others join: it lies within a ball about one
-/// of its points.
-struct HeldCurve {
-  Vec3 point;
-  double radius = 0.0;  // half of its length [length]
+/// A curve lies within it.
+struct Ball {
+  Vec3 center = Vec3::Zero();
+  double radius = 0.0;  // [length]
 };
+
+/// Of points along a curve: between two neighbors it leaves them by no more
+/// than half of what chord they have, and of what all chords are short of its
+/// length.
+Ball ball_about(const curves::CurveShape& shape) {
+  constexpr int kPoints = 48;
+  std::vector<double> t(kPoints);
+  for (int k = 0; k < kPoints; ++k) {
+    t[k] = static_cast<double>(k) / kPoints;
+  }
+  const Points points = curves::points_at(shape, t);
+  Ball ball;
+  double chords = 0.0;
+  double longest = 0.0;
+  for (int k = 0; k < kPoints; ++k) {
+    const double chord = (points[(k + 1) % kPoints] - points[k]).norm();
+    chords += chord;
+    longest = std::max(longest, chord);
+    ball.center += points[k] / kPoints;
+  }
+  for (const Vec3& point : points) {
+    ball.radius = std::max(ball.radius, (point - ball.center).norm());
+  }
+  const double left = std::max(curves::length_of(shape) - chords, 0.0);
+  ball.radius += 0.5 * (longest + left);
+  return ball;
+}
 
 /// Where films' lines may end.
 class EndFinder {
@@ -77,7 +103,7 @@ class EndFinder {
   explicit EndFinder(const FilmSystem& system)
       : system_(system),
         numbers_(curve_numbers(system)),
-        curves_(system.curves.size()) {
+        balls_(system.curves.size()) {
     for (std::size_t f = 0; f < system.films.size(); ++f) {
       films_.emplace(system.films[f].name, f);
     }
@@ -91,9 +117,9 @@ class EndFinder {
     std::vector<Candidate> candidates;
     for (const auto& [c, there] : joined_films_at(film)) {
       if (held || (there > 1 && !system_.curves[c].free)) {
-        const HeldCurve& curve = ball(c);
+        const Ball& ball = ball_of(c);
         candidates.push_back(
-            {std::max((curve.point - place).norm() - curve.radius, 0.0), c});
+            {std::max((ball.center - place).norm() - ball.radius, 0.0), c});
       }
     }
     std::stable_sort(candidates.begin(), candidates.end(),
@@ -147,11 +173,10 @@ class EndFinder {
     return known->second;
   }
 
-  const HeldCurve& ball(int curve) {
-    std::optional<HeldCurve>& known = curves_[curve];
+  const Ball& ball_of(int curve) {
+    std::optional<Ball>& known = balls_[curve];
     if (!known) {
-      const curves::CurveShape& shape = system_.curves[curve].shape;
-      known = {curves::point_at(shape, 0.0), 0.5 * curves::length_of(shape)};
+      known = ball_about(system_.curves[curve].shape);
     }
     return *known;
   }
@@ -160,7 +185,7 @@ class EndFinder {
   std::map<std::string, int> numbers_;
   std::map<std::string, std::size_t> films_;
   std::map<int, std::map<int, int>> counts_;  // by film
-  std::vector<std::optional<HeldCurve>> curves_;
+  std::vector<std::optional<Ball>> balls_;
 };
 
 }  // namespace

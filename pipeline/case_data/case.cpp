@@ -548,6 +548,36 @@ std::vector<BodyEntry> solid_bodies(const Case& input) {
   return solid;
 }
 
+namespace {
+
+/// All curves are where the initial design has them.
+bool has_first_curves(const Case& input, const films::FilmSystem& system) {
+  std::vector<std::string> problems;
+  const std::vector<curves::Curve> first =
+      curves_of(input, CaseValues(input, initial_design(input), problems));
+  return problems.empty() &&
+         std::equal(first.begin(), first.end(), system.curves.begin(),
+                    system.curves.end(),
+                    [](const curves::Curve& a, const curves::Curve& b) {
+                      return curves::are_equal(a.shape, b.shape);
+                    });
+}
+
+/// Where curves lie to each other, sides that they share, ends of lines.
+void check_curves(const Case& input, const films::FilmSystem& system,
+                  const VectorX& design, const CaseValues& values) {
+  const std::size_t before = values.problems().size();
+  check_meetings(input, system, values);
+  if (values.problems().size() == before) {
+    check_nesting(input, system, design, values.problems());
+  }
+  check_sides(input, system, values);
+  check_free_sides(input, system, values);
+  check_join_ends(input, system, design, values.problems());
+}
+
+}  // namespace
+
 EvaluatedCase evaluate(const Case& input, const VectorX& design,
                        std::vector<std::string>& problems) {
   const std::size_t before = problems.size();
@@ -559,13 +589,11 @@ EvaluatedCase evaluate(const Case& input, const VectorX& design,
   result.design = design;
   result.fea_edge = input.resolution.fea;
   if (problems.size() == before) {
-    check_meetings(input, result.film_system, values);
-    if (problems.size() == before) {
-      check_nesting(input, result.film_system, design, problems);
+    // Said at the initial design, it is true of all with its curves.
+    if (design == initial_design(input) ||
+        !has_first_curves(input, result.film_system)) {
+      check_curves(input, result.film_system, design, values);
     }
-    check_sides(input, result.film_system, values);
-    check_free_sides(input, result.film_system, values);
-    check_join_ends(input, result.film_system, design, problems);
     check_places(input, result, values);
     check_on_walls(input, result.film_system, values);
     check_symmetry(input, result, values);

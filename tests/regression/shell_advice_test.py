@@ -63,6 +63,12 @@ class Advice(ProgramTest):
                           "{ temperature = 20 }"), [])):
             self.assertNotIn("shells", self.check(text, *sets))
 
+    def test_walls_of_no_material_are_left_alone(self):
+        text = WALLS.split("[materials.steel]")[0].replace(
+            'material = "steel"', "")
+        self.assertNotIn("steel", text)
+        self.assertNotIn("shells", self.check(text, "design.wall.initial=0.5"))
+
     def test_a_run_says_it_of_the_film(self):
         said = self.warnings(WALLS.replace('kind = "compliance"',
                                            'kind = "strain_energy"'),

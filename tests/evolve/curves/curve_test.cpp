@@ -368,5 +368,32 @@ TEST(CurveRate, RefusesAnotherKind) {
                InvalidInput);
 }
 
+TEST(AreEqual, LooksAtEveryNumber) {
+  const std::vector<curves::CurveShape> shapes = all_shapes();
+  for (std::size_t a = 0; a < shapes.size(); ++a) {
+    const bool has_numbers =
+        !std::holds_alternative<curves::ParametricCurve>(shapes[a]);
+    for (std::size_t b = 0; b < shapes.size(); ++b) {
+      const curves::CurveShape other = shapes[b];
+      EXPECT_EQ(curves::are_equal(shapes[a], other), a == b && has_numbers)
+          << a << " and " << b;
+    }
+  }
+  curves::Polyline bent{{{-2, -1, 0}, {2, -1, 0}, {2, 1, 0}, {-2, 1, 0}},
+                        {std::nullopt, Vec3(3, 0, 0.2), std::nullopt, {}}};
+  const curves::CurveShape before = bent;
+  bent.via[1]->z() = 0.3;
+  EXPECT_FALSE(curves::are_equal(before, bent));
+  curves::CurveCopy copy{.of = std::make_shared<curves::Curve>(
+                             curves::Curve{.name = "first", .shape = before})};
+  const curves::CurveShape of_first = copy;
+  copy.of = std::make_shared<curves::Curve>(
+      curves::Curve{.name = "second", .shape = before});
+  EXPECT_TRUE(curves::are_equal(of_first, copy));
+  copy.of = std::make_shared<curves::Curve>(
+      curves::Curve{.name = "first", .shape = bent});
+  EXPECT_FALSE(curves::are_equal(of_first, copy));
+}
+
 }  // namespace
 }  // namespace meniscus::curve_test
