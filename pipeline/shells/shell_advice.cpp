@@ -99,9 +99,6 @@ std::string at_text(const ThicknessAt& at, const UnitSystem& units) {
 
 /// Could its walls be shells as they stand?
 bool shells_can(const case_data::Case& input) {
-  if (!input.symmetry.empty()) {
-    return false;
-  }
   case_data::Case other = input;
   other.walls.clear();
   for (const case_data::WallEntry& wall : input.walls) {
