@@ -824,7 +824,8 @@ through = [0, 0, 50]
         text = STRIP.replace(', fix_rotation = "xyz"', "")
         done = self.call("run", self.case(text), "--out", self.folder / "out")
         self.expect(done, 3)
-        self.assertRegex(done.stdout + done.stderr, "turn|move")
+        self.assertRegex(done.stdout + done.stderr,
+                         "load case 'tip': a shell .* is free to (turn|move)")
 
 
 if __name__ == "__main__":
