@@ -311,6 +311,23 @@ void check_load_keys(CaseContext& context, const CaseTable& table,
   }
 }
 
+/// A part spins about one axis and has one temperature: a second is no sum.
+void refuse_second(CaseContext& context, const CaseTable& table,
+                   const std::string& key, case_data::LoadKind kind,
+                   const case_data::LoadCaseEntry& load_case) {
+  const bool single = kind == case_data::LoadKind::Spin ||
+                      kind == case_data::LoadKind::Temperature;
+  const auto first = std::find_if(
+      load_case.loads.begin(), load_case.loads.end(),
+      [kind](const case_data::LoadEntry& load) { return load.kind == kind; });
+  if (single && first != load_case.loads.end()) {
+    note(context, table, key.c_str(),
+         fmt::format("is the second {} of its load case, after that of line "
+                     "{}; keep one",
+                     key, first->line));
+  }
+}
+
 case_data::LoadPath load_path(CaseContext& context, const CaseTable& table,
                               const std::string& key) {
   const std::string by = table.choice("by").value_or("spread");
@@ -434,6 +451,7 @@ void read_load(CaseContext& context, const CaseTable& table,
   }
   check_load_keys(context, table, key);
   load.kind = case_data::row_named(load_kinds(), key).kind;
+  refuse_second(context, table, key, load.kind, load_case);
   if ((key == "force" || key == "size") &&
       (table.has("at") || table.has("moment"))) {
     load.kind = case_data::LoadKind::Remote;

@@ -66,14 +66,13 @@ shell_deck::DeckShellStep shell_step_of(const shells::ShellPart& part,
   shell_deck::DeckShellStep step{.name = load_case.name};
   step.supports = supports_of(shells::node_supports(part, load_case));
   const shell::ShellLoads all = shells::shell_actions(part, load_case).loads;
-  if (!all.edges.empty() || all.nodal.size() != 0) {
-    shell::ShellLoads forces;
-    forces.edges = all.edges;
-    forces.nodal = all.nodal;
-    // Without moments: neither rims nor films carry any at nodes.
-    step.nodal_forces = shells::displacements_of(
-        shell::nodal_forces(part.mesh, part.sections, forces));
-  }
+  shell::ShellLoads others = all;  // than a deck has as such
+  others.pressures.clear();
+  others.gravity.setZero();
+  others.spin.reset();
+  // Without moments: neither rims nor films carry any at nodes.
+  step.nodal_forces = shells::displacements_of(
+      shell::nodal_forces(part.mesh, part.sections, others));
   for (const shell::FacetPressure& p : all.pressures) {
     step.pressures.push_back({p.facet, p.pressure});
   }

@@ -372,17 +372,24 @@ equations::ElasticSolution solve_shell(const case_data::EvaluatedCase& inputs,
   equations::ElasticSolution solution;
   solution.report.solver = "cholmod";
   part.cases.resize(inputs.load_cases.size());
+  std::size_t k = 0;
+  const auto failed = [&](const std::exception& error) {
+    solution.failure =
+        Failure{FailureKind::SolverFailed,
+                fmt::format("load case '{}': {}", inputs.load_cases[k].name,
+                            error.what())};
+  };
   try {
-    for (std::size_t k = 0; k < part.cases.size(); ++k) {
+    for (; k < part.cases.size(); ++k) {
       const Timer setup;
       part.cases[k].system = system_of(inputs, k, part);
       solution.report.setup_seconds += setup.seconds();
       solve_case(inputs.load_cases[k], part, part.cases[k], solution);
     }
   } catch (const SolverError& error) {
-    solution.failure = Failure{FailureKind::SolverFailed, error.what()};
+    failed(error);
   } catch (const InvalidInput& error) {
-    solution.failure = Failure{FailureKind::SolverFailed, error.what()};
+    failed(error);
   }
   return solution;
 }

@@ -89,6 +89,7 @@ def read(text):
             if f[5]:
                 deck.frames[int(f[0])] = int(f[5])
         elif name == "CTRIA6":
+            f = [*f, *[""] * 5]
             t = [real(x) for x in f[10:13] if x]
             if f[8]:
                 raise ValueError("a material angle")

@@ -12,7 +12,8 @@ THICK = r"shells\.\w+ is (\S+) mm thick at \((.*?)\), where"
 BENDS = r"bends with a radius of (\S+) mm: (\S+) of it"
 # The same part as walls.
 WALLS = (shells_test.TUBE.replace("[shells.tube]", "[walls.tube]")
-         .replace(', fix_rotation = "xyz"', ""))
+         .replace(', fix_rotation = "xyz"', "")
+         .replace('{ on = "skin/rim:high", rim_tension = "20 * inside" },', ""))
 
 
 class Advice(ProgramTest):
@@ -45,6 +46,19 @@ class Advice(ProgramTest):
             if times:
                 self.assertAlmostEqual(float(times[1]), edge / wall, delta=1)
             self.assertRegex(said, r"case\.toml:\d+: walls")
+
+    def test_halves_of_thin_walls_are_told_of_shells(self):
+        text = shells_test.THICK.format(
+            name="all", supports='{ on = "skin/rim:low", fix = "xyz" }',
+            load='{ on = "skin/rim:high", force = [0, 0, -4000] }').replace(
+            "ring^2 * 100", "ring^2 * 50").replace("[shells.tube]", """[symmetry]
+planes = [{ at = [0, 0, 0], normal = [0, 1, 0] }]
+
+[walls.tube]""")
+        self.assertIn("[shells.tube] in place of [walls.tube]",
+                      self.check(text, "design.wall.initial=2"))
+        self.check(text.replace("[walls.tube]", "[shells.tube]"),
+                   "design.wall.initial=2")
 
     def test_the_thinnest_place_is_named(self):
         said = self.check(WALLS.replace('"wall"', '"wall * (1 + z / 100)"'))

@@ -127,6 +127,20 @@ class ShellFiles(ProgramTest):
     def test_calculix_bends_the_strip_as_far(self):
         self.assertLess(self.differences(shells_test.STRIP, "7")[0], 2e-3)
 
+    # What acts along rims is all that acts, in both decks.
+    def test_decks_have_what_pulls_rims(self):
+        text = shells_test.STRIP.replace("force = [0, 0, 0.1]",
+                                         "rim_tension = 5")
+        self.assertLess(self.differences(text, "7")[0], 2e-3)
+        file = self.run_case(text, "7", "bdf")["bdf"]
+        bulk = bulk_data.read(file.read_text())
+        ends = [x[0] for x in bulk.grids.values()]
+        theirs = self.by_calculix(bulk_data.calculix_deck(bulk, 1), "bulk",
+                                  len(ends))[0]
+        far = [u[0] for x, u in zip(ends, theirs) if abs(x - 100) < 1e-9]
+        for u in far:
+            self.assertLess(abs(u / (5 * 100 / 1000) - 1), 2e-3)
+
     # CalculiX presses the face that normals point away from, and holds the
     # middle of the wall: drawn so that both mean the same.
     def test_calculix_finds_those_of_films_drawn_at_random(self):

@@ -768,6 +768,9 @@ constraints = [{ response = "stable", min = 1.5 }]
              "a temperature"),
             ("pressure = 0.1", 'pressure = "0.1 + z"', "a pressure of place"),
             ("spin = 100", 'spin = "inside"', "a spin that follows the design"),
+            ("{ gravity = [0, 0, -9810] }",
+             "{ spin = 1, at = [0, 0, 0], axis = [1, 0, 0] }",
+             ".spin is the second spin of its load case, after that of line "),
             ('kind = "mass"', 'kind = "uniformity"',
              "responses.mass is of kind uniformity, which shells do not have"),
             ('kind = "mass"', 'kind = "buckling_factor"\nload_case = "inner"',
@@ -821,7 +824,8 @@ through = [0, 0, 50]
         text = STRIP.replace(', fix_rotation = "xyz"', "")
         done = self.call("run", self.case(text), "--out", self.folder / "out")
         self.expect(done, 3)
-        self.assertRegex(done.stdout + done.stderr, "turn|move")
+        self.assertRegex(done.stdout + done.stderr,
+                         "load case 'tip': a shell .* is free to (turn|move)")
 
 
 if __name__ == "__main__":
