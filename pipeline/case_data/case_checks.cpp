@@ -825,10 +825,10 @@ void add_sides(const Case& input, const FilmEntry& film,
     if (is_own && !is_free && !slides_at(input, curve)) {
       names.push_back(film.spec.name + "/rim:" + curve);
     }
-    for (const CurveEntry& name : input.curves) {
-      if (!held.contains(name.name) &&
-          input.sharing_sides.contains({curve, name.name})) {
-        names.push_back(film.spec.name + "/rim:" + name.name);
+    for (auto at = input.sharing_sides.lower_bound({curve, ""});
+         at != input.sharing_sides.end() && at->first == curve; ++at) {
+      if (!held.contains(at->second)) {
+        names.push_back(film.spec.name + "/rim:" + at->second);
       }
     }
   }

@@ -46,6 +46,8 @@ struct CaseContext {
   std::vector<std::string> shapes;    // of fields, by position
   std::set<std::size_t> used_shapes;  // some expression has them
   bool bodies_good = false;           // nothing was wrong with them
+  /// What can be loaded, once a load has asked: walls and shells are read.
+  std::optional<std::vector<std::string>> surfaces;
   // Of the copy of an entry with `repeat` that is being read: i, j, k.
   std::vector<int> indices;
   std::map<std::string, std::shared_ptr<step::StepEdges>>

@@ -644,7 +644,10 @@ namespace {
 std::string known_surface(CaseContext& context, const CaseTable& table,
                           const case_data::Case& result, const char* key,
                           std::string surface) {
-  const std::vector<std::string> known = case_data::surface_names(result);
+  if (!context.surfaces) {
+    context.surfaces = case_data::surface_names(result);
+  }
+  const std::vector<std::string>& known = *context.surfaces;
   surface = without_side(surface, result);
   int bodies = 0;
   int solid = 0;

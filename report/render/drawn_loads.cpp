@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -129,6 +130,7 @@ class LoadDrawing {
         diagonal_(diagonal),
         gap_(kArrowGap * diagonal),
         to_eye_(job.view.normalized()),
+        load_count_(std::max<std::size_t>(job.loads.size(), 1)),
         text_{.size = text, .colour = kLoadColour, .bold = true} {
     for (const picture::PictureLoad& load : job.loads) {
       double& most = largest_[load.kind];
@@ -266,14 +268,19 @@ class LoadDrawing {
 
   void draw_spread(const picture::PictureLoad& load,
                    const SurfacePatch& patch) {
+    // Windows of a barrel: a few arrows each, and not each a label.
     constexpr std::size_t kMost = 48;
+    constexpr std::size_t kMostOfAll = 480;
+    constexpr int kMostAlike = 3;
+    const std::size_t most =
+        std::clamp<std::size_t>(kMostOfAll / load_count_, 1, kMost);
     constexpr double kRoom = 0.45;  // of what is free across a bore
     const double usual = kSmallArrow * diagonal_;
     const bool pressure = load.kind == picture::PictureLoadKind::Pressure;
     double best = -2.0;
     Vec3 label_at = patch.centre;
     Vec3 label_out = patch.normal;
-    for (const int f : spread_facets(mesh_, patch, 0.9 * usual, kMost)) {
+    for (const int f : spread_facets(mesh_, patch, 0.9 * usual, most)) {
       const Vec3 n = area_vector2(mesh_, f).normalized();
       const Vec3 at = facet_middle(mesh_, f) + 0.3 * gap_ * n;
       const Vec3 along = !pressure ? load.direction.normalized()
@@ -293,7 +300,9 @@ class LoadDrawing {
         label_out = n;
       }
     }
-    label(label_at, label_out, load.label);
+    if (++alike_[load.label] <= kMostAlike) {
+      label(label_at, label_out, load.label);
+    }
   }
 
   void draw_beside(const picture::PictureLoad& load) {
@@ -316,8 +325,10 @@ class LoadDrawing {
   double diagonal_;
   double gap_;
   Vec3 to_eye_;
+  std::size_t load_count_;
   TextStyle text_;
   std::map<picture::PictureLoadKind, double> largest_;
+  std::map<std::string, int> alike_;  // labels of spread loads, so far
 };
 
 }  // namespace
