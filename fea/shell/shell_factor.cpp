@@ -129,7 +129,7 @@ ShellFactor::Leaf ShellFactor::factored(int leaf) const {
   if (!factor.factorize(K)) {
     throw_not_definite(freedom_.unknowns());
   }
-  return {own, boundary, std::move(coupling), std::move(factor), raised};
+  return {own, boundary, coupling, std::move(factor), raised};
 }
 
 const ShellFactor::Leaf& ShellFactor::leaf_of(

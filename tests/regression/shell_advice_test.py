@@ -78,10 +78,13 @@ planes = [{ at = [0, 0, 0], normal = [0, 1, 0] }]
             self.assertNotIn("shells", self.check(text, *sets))
 
     def test_walls_of_no_material_are_left_alone(self):
-        text = WALLS.split("[materials.steel]")[0].replace(
-            'material = "steel"', "")
-        self.assertNotIn("steel", text)
-        self.assertNotIn("shells", self.check(text, "design.wall.initial=0.5"))
+        rim = 'kind = "circle"\ncenter = [0, 0, {}]\nnormal = [0, 0, 1]\nradius = 10\n'
+        self.assertNotIn("shells", self.check(
+            'title = "Catenoid"\nunits = "mm-N-MPa"\n'
+            f"[curves.low]\n{rim.format(0)}[curves.high]\n{rim.format(9)}"
+            '[films.skin]\nkind = "loft"\ncurves = ["low", "high"]\n'
+            '[walls.web]\nfilms = ["skin"]\nthickness = 0.1\n'
+            "[resolution]\nfea = 1\n"))
 
     def test_a_run_says_it_of_the_film(self):
         said = self.warnings(WALLS.replace('kind = "compliance"',
