@@ -68,13 +68,9 @@ ShellFactor::ShellFactor(const ShellMesh& mesh, const ShellFreedom& freedom,
     const int count = std::min(kLeavesAtOnce, cut_.leaf_count() - first);
     condense_leaves(first, count);
     // Wholes of which both halves are there, from below.
-    int last = cut_.part_of(first + count - 1);
-    for (int part = cut_.part_of(first) / 2; part > 0; part /= 2) {
-      last /= 2;
-      for (int whole = part; whole <= last; ++whole) {
-        if (schur_[2 * whole].size() > 0 && schur_[2 * whole + 1].size() > 0) {
-          condense_halves(whole);
-        }
+    for (int whole = cut_.leaf_count() - 1; whole > 0; --whole) {
+      if (schur_[2 * whole] && schur_[2 * whole + 1]) {
+        condense_halves(whole);
       }
     }
   }
@@ -148,10 +144,10 @@ void ShellFactor::condense_leaves(int first, int count) {
     const int leaf = first + static_cast<int>(k);
     auto own = std::make_unique<Leaf>(factored(leaf));
     const auto outside = static_cast<int>(own->boundary.size());
-    Eigen::MatrixXd& S = schur_[cut_.part_of(leaf)];
     if (cut_.levels > 0) {
-      S = own->factor.schur_complement(outside);
+      Eigen::MatrixXd S = own->factor.schur_complement(outside);
       S.diagonal() -= own->raised;
+      schur_[cut_.part_of(leaf)] = std::move(S);
     }
     constexpr double kNumber = sizeof(double);
     if (cut_.levels == 0 ||
@@ -175,12 +171,13 @@ void ShellFactor::condense_halves(int part) {
   Eigen::MatrixXd F = Eigen::MatrixXd::Zero(next, next);
   for (const int half : {2 * part, 2 * part + 1}) {
     const std::vector<int> at = unknowns_of(cut_.parts[half].boundary);
+    const Eigen::MatrixXd& S = *schur_[half];
     for (std::size_t c = 0; c < at.size(); ++c) {
       for (std::size_t r = 0; r < at.size(); ++r) {
-        F(place[at[r]], place[at[c]]) += schur_[half](r, c);
+        F(place[at[r]], place[at[c]]) += S(r, c);
       }
     }
-    schur_[half] = {};
+    schur_[half].reset();
   }
   const auto own = static_cast<int>(front.own.size());
   if (!eliminate_leading(F, own)) {
@@ -188,8 +185,9 @@ void ShellFactor::condense_halves(int part) {
   }
   front.L = F.leftCols(own);
   const Eigen::Index left = next - own;
-  schur_[part] =
-      F.bottomRightCorner(left, left).selfadjointView<Eigen::Lower>();
+  Eigen::MatrixXd S(left, left);
+  S = F.bottomRightCorner(left, left).selfadjointView<Eigen::Lower>();
+  schur_[part] = std::move(S);
 }
 
 Eigen::MatrixXd ShellFactor::solve(const Eigen::MatrixXd& right) const {

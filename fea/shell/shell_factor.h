@@ -8,6 +8,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/math/linear_solve.h"
@@ -53,8 +54,9 @@ class ShellFactor {
   Substructures cut_;
   double kept_bytes_ = 0.0;
   std::vector<std::unique_ptr<Leaf>> kept_;
-  std::vector<Front> fronts_;           // by part
-  std::vector<Eigen::MatrixXd> schur_;  // by part, until its whole has it
+  std::vector<Front> fronts_;  // by part
+  // By part, until its whole has it; of no rows where it hangs on nothing.
+  std::vector<std::optional<Eigen::MatrixXd>> schur_;
 };
 
 }  // namespace meniscus::shell

@@ -104,11 +104,51 @@ TEST(ShellFactor, OfSubstructuresSolvesAsTheWhole) {
       const Eigen::MatrixXd parts = vault.factor(options).solve(right);
       EXPECT_LT((parts - whole).norm(), 1e-7 * whole.norm())
           << "seed " << seed << ", " << levels << " levels";
-      // The work it does is what it should: K u = f on all unknowns.
       ShellFactorOptions remade = options;
       remade.kept_bytes = 0.0;
       EXPECT_TRUE(vault.factor(remade).solve(right) == parts);
     }
+  }
+}
+
+/// A long plate and a short one, a quarter of both, that hang together nowhere:
+/// one leaf of four has no boundary, and the one beside it has.
+TEST(ShellFactor, OfPiecesApartSolvesAsTheWhole) {
+  const auto plate = [](int cells, double height) {
+    return shell_shapes::mapped_shell(
+        [=](double s, double t) -> Vec3 {
+          return {cells * s, 8.0 * t, height};
+        },
+        0.05, {.m = cells, .n = 8});
+  };
+  const MappedShell plates =
+      shell_shapes::joined(plate(12, 0.0), plate(4, 1.0));
+  const Substructures cut = cut_shell(plates.mesh, 2);
+  int apart = 0;
+  for (int leaf = 0; leaf < cut.leaf_count(); ++leaf) {
+    apart += cut.parts[cut.part_of(leaf)].boundary.empty() ? 1 : 0;
+  }
+  ASSERT_EQ(apart, 1);
+  std::vector<NodeSupport> supports;
+  hold(supports, plates.nodes([](double s, double) { return s < 1e-9; }),
+       "xyzabc");
+  const ShellFreedom freedom(static_cast<int>(plates.mesh.nodes.size()),
+                             supports);
+  const std::vector<Section> sections = {shell_shapes::isotropic(2e5, 0.3)};
+  const std::vector<LaminateLaw> laws = laminate_laws(sections);
+  const auto solved = [&](int levels) -> Eigen::MatrixXd {
+    const ShellFactor factor(
+        plates.mesh, freedom,
+        [&](int f) {
+          return condensed(
+              whole_stiffness(facet_of(plates.mesh, sections, laws, f)));
+        },
+        {.unknowns = 50, .most_levels = levels, .kept_bytes = kAll});
+    return factor.solve(Eigen::MatrixXd::Ones(freedom.unknowns(), 1));
+  };
+  const Eigen::MatrixXd whole = solved(0);
+  for (const int levels : {1, 2, 3, 4}) {
+    EXPECT_LT((solved(levels) - whole).norm(), 1e-7 * whole.norm()) << levels;
   }
 }
 
