@@ -119,7 +119,7 @@ void add_shell_fields(const case_data::Case& input,
                                   3, u.data(),
                                   static_cast<std::size_t>(u.size())));
   const VectorX turned =
-      shells::rotations_of(part.cases[load_case].displacement);
+      shell::rotations_of(part.cases[load_case].displacement);
   out.points.push_back(node_field("rotation" + ending, "rad", 3, turned.data(),
                                   static_cast<std::size_t>(turned.size())));
   using W = shell::WallStress;
