@@ -96,20 +96,48 @@ curves::CurveShape shape_of(const CurveEntry& curve,
   return curves::Polygon{points_of(curve, values)};
 }
 
+/// All that the curve is made of.
+std::vector<Quantity> numbers_of(const CurveEntry& entry) {
+  const CopyEntry& copy = entry.copy;
+  std::vector<Quantity> numbers = {
+      entry.radius, entry.radius_1,      entry.radius_2, entry.width,
+      entry.height, entry.corner_radius, copy.angle};
+  const auto add = [&numbers](const QuantityVector& vector) {
+    numbers.insert(numbers.end(), vector.begin(), vector.end());
+  };
+  add(entry.center);
+  add(entry.normal);
+  add(entry.axis);
+  add(copy.scale);
+  add(copy.about);
+  add(copy.move);
+  for (const PathPoint& point : entry.points) {
+    add(point.at);
+  }
+  if (copy.offset) {
+    numbers.push_back(*copy.offset);
+  }
+  if (copy.mirror) {
+    add(*copy.mirror);
+  }
+  return numbers;
+}
+
 /// The values of what a curve that is none is made of.
 std::string where(const CurveEntry& entry, const CaseValues& values) {
-  std::vector<QuantityVector> points;
-  points.reserve(entry.points.size());
-  for (const PathPoint& point : entry.points) {
-    points.push_back(point.at);
+  return values.where(numbers_of(entry));
+}
+
+/// Of values at any design. `entry` is among the curves of `input`, those
+/// before it fixed where they can be.
+bool can_be_fixed(const Case& input, const CurveEntry& entry,
+                  const CaseValues& values) {
+  if (entry.kind == CurveKind::OfFeature ||
+      (entry.kind == CurveKind::Copy &&
+       !input.curves[static_cast<std::size_t>(entry.copy.of)].fixed)) {
+    return false;
   }
-  const CopyEntry& copy = entry.copy;
-  return values.where(entry.center, entry.normal, entry.axis, entry.radius,
-                      entry.radius_1, entry.radius_2, entry.width, entry.height,
-                      entry.corner_radius, points,
-                      copy.offset.value_or(Quantity{}), copy.scale,
-                      copy.mirror.value_or(QuantityVector{}), copy.angle,
-                      copy.about, copy.move);
+  return !values.follows_design(numbers_of(entry));
 }
 
 bool may_meet_itself(const CurveEntry& entry) {
@@ -155,6 +183,12 @@ std::vector<curves::Curve> curves_of(const Case& input,
   const bool features_bad = values.problems().size() > no_problems;
   const auto of_features = feature_curves(input, values);
   for (const CurveEntry& entry : input.curves) {
+    if (entry.fixed) {
+      result.push_back(values.are_rates() ? entry.fixed->rate
+                                          : entry.fixed->value);
+      bad.push_back(0);
+      continue;
+    }
     const std::size_t before = values.problems().size();
     if (entry.kind == CurveKind::Copy &&
         bad[static_cast<std::size_t>(entry.copy.of)] != 0) {
@@ -188,6 +222,34 @@ std::vector<curves::Curve> curves_of(const Case& input,
     check_feature_rims(input, result, values);
   }
   return result;
+}
+
+void fix_curves(Case& input) {
+  for (CurveEntry& entry : input.curves) {
+    entry.fixed = nullptr;
+  }
+  if (input.design.empty()) {
+    return;
+  }
+  std::vector<std::string> problems;
+  const VectorX design = initial_design(input);
+  const CaseValues values(input, design, problems);
+  if (!problems.empty()) {
+    return;
+  }
+  const std::vector<curves::Curve> value = curves_of(input, values);
+  const std::vector<curves::Curve> rate =
+      curves_of(input, CaseValues(input, design, problems, 0));
+  if (!problems.empty()) {
+    return;
+  }
+  for (std::size_t c = 0; c < input.curves.size(); ++c) {
+    CurveEntry& entry = input.curves[c];
+    if (can_be_fixed(input, entry, values)) {
+      entry.fixed =
+          std::make_shared<const FixedCurve>(FixedCurve{value[c], rate[c]});
+    }
+  }
 }
 
 namespace {

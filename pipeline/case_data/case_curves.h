@@ -16,6 +16,10 @@ namespace meniscus::case_data {
 std::vector<curves::Curve> curves_of(const Case& input,
                                      const CaseValues& values);
 
+/// Draws those that follow no design variable once for all designs. What is no
+/// curve is left to curves_of(). To be done again when a parameter changes.
+void fix_curves(Case& input);
+
 /// One after the other; expressions are not looked at: false.
 bool have_equal_shapes(const std::vector<curves::Curve>& a,
                        const std::vector<curves::Curve>& b);

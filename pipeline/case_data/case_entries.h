@@ -102,6 +102,11 @@ struct CopyEntry {
   QuantityVector about, move;
 };
 
+/// A curve that no design variable moves, and its rates, which are none.
+struct FixedCurve {
+  curves::Curve value, rate;
+};
+
 /// What the kind does not need is empty.
 struct CurveEntry {
   std::string name;
@@ -116,6 +121,7 @@ struct CurveEntry {
   std::vector<int> free_sides = {};  // or along these of its sides, from 0
   int feature = -1;                  // index of the feature, and of its curves
   int of_feature = -1;
+  std::shared_ptr<const FixedCurve> fixed = nullptr;  // by fix_curves()
   SourceLine line = 0;
 
   bool is_free_somewhere() const { return free || !free_sides.empty(); }

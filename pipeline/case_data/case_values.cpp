@@ -83,11 +83,6 @@ bool CaseValues::follows_design(const Quantity& quantity) const {
                      [this](int name) { return follows(name); });
 }
 
-bool CaseValues::follows_design(const QuantityVector& vector) const {
-  return std::any_of(vector.begin(), vector.end(),
-                     [this](const Quantity& q) { return follows_design(q); });
-}
-
 CaseValues::CaseValues(const Case& input, const VectorX& design,
                        std::vector<std::string>& problems, int rate_by)
     : CaseValues(input, design, problems) {

@@ -1,6 +1,7 @@
 /// The numbers behind a case's names at one design.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <string>
 #include <vector>
@@ -61,7 +62,12 @@ class CaseValues {
   PlaceField place_field(const PlaceQuantity& quantity) const;
   /// Does any design variable move it?
   bool follows_design(const Quantity& quantity) const;
-  bool follows_design(const QuantityVector& vector) const;
+  template <class Items>
+  bool follows_design(const Items& items) const {
+    return std::any_of(items.begin(), items.end(), [this](const auto& item) {
+      return follows_design(item);
+    });
+  }
 
   /// An expression over the case's names and `more` values after them; its
   /// derivative, when these change at `more_rates`. Quiet NaN, and a problem

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "pipeline/case_data/case_curves.h"
 #include "pipeline/case_data/case_values.h"
 
 namespace meniscus::case_films {
@@ -39,6 +40,7 @@ case_data::Case with_parameters(case_data::Case input, const VectorX& values,
     }
     ++k;
   }
+  fix_curves(input);
   return input;
 }
 

@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "pipeline/case_data/case_checks.h"
+#include "pipeline/case_data/case_curves.h"
 #include "pipeline/files/content_hash.h"
 #include "pipeline/reader/case_reader_content.h"
 #include "pipeline/reader/case_reader_overrides.h"
@@ -45,6 +46,9 @@ void read_content(const std::string& text, case_data::CaseProblems& problems,
     let_parameters_scatter(root, overridden);
     read_tables(root, overridden, problems, result);
     const bool is_read = problems.empty();
+    if (is_read) {
+      case_data::fix_curves(result);
+    }
     case_data::check_case(result, problems);
     if (is_read) {
       shells::check_shells(result, problems);

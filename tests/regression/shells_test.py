@@ -737,7 +737,8 @@ constraints = [{ response = "stable", min = 1.5 }]
         self.expect(self.call(
             "run", ROOT / "cases" / "strut_family" / "shells.toml", "--jobs",
             "2", "--no-pictures", "--no-report", "--out", out), 0)
-        rows = list(csv.DictReader((out / "family.csv").open()))
+        with (out / "family.csv").open() as table:
+            rows = list(csv.DictReader(table))
         self.assertEqual(len(rows), 30)
         masses = set()
         for light, heavy in zip(rows[::2], rows[1::2]):

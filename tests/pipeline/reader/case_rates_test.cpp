@@ -5,6 +5,7 @@
 
 #include <gmock/gmock.h>
 
+#include "pipeline/case_data/case_curves.h"
 #include "tests/support/case_text.h"
 
 namespace meniscus::case_rates_test {
@@ -88,6 +89,71 @@ TEST(CaseRates, AreTheDerivativesOfTheNumbers) {
                   kDifference * std::max(1.0, std::abs(expected)))
           << "number " << index << ", variable " << j;
       ++index;
+    }
+  }
+}
+
+/// Curves that no design variable moves stand beside some that it does.
+std::string with_copies() {
+  return changed(depending(), "[films.skin]",
+                 R"([curves.still]
+kind = "circle"
+center = [200, 0, 0]
+normal = [0, 0, 1]
+radius = "load / 20"
+
+[curves.still_too]
+kind = "copy"
+of = "still"
+move = [0, 0, "load / 50"]
+
+[curves.follows]
+kind = "copy"
+of = "still"
+move = [0, 0, "-length / 9"]
+
+[curves.of_that]
+kind = "copy"
+of = "follows"
+move = [0, 0, -9]
+
+[films.above]
+kind = "loft"
+curves = ["still", "still_too"]
+tension = 1
+
+[films.below]
+kind = "loft"
+curves = ["follows", "of_that"]
+tension = 1
+
+[films.skin])");
+}
+
+TEST(CaseRates, AndValuesOfFixedCurvesAreThoseDrawnAnew) {
+  const reader::CaseReading reading =
+      reader::read_case_text(with_copies(), "case.toml");
+  ASSERT_THAT(reading.problems, testing::IsEmpty());
+  case_data::Case drawn = *reading.input;
+  std::vector<std::string> fixed;
+  for (case_data::CurveEntry& curve : drawn.curves) {
+    if (curve.fixed) {
+      fixed.push_back(curve.name);
+    }
+    curve.fixed = nullptr;
+  }
+  EXPECT_THAT(fixed, testing::ElementsAre("still", "still_too"));
+  for (const double foot : {21.0, 25.0, 30.5}) {
+    VectorX design = case_data::initial_design(drawn);
+    design[0] = foot;
+    const auto a = case_data::evaluate(*reading.input, design);
+    const auto b = case_data::evaluate(drawn, design);
+    EXPECT_TRUE(case_data::have_equal_shapes(a.film_system.curves,
+                                             b.film_system.curves));
+    for (int j = 0; j < 2; ++j) {
+      EXPECT_TRUE(case_data::have_equal_shapes(
+          case_data::rates(*reading.input, design, j).film_system.curves,
+          case_data::rates(drawn, design, j).film_system.curves));
     }
   }
 }
