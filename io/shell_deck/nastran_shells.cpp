@@ -190,14 +190,10 @@ class ShellBulk {
       }
       text_ += io::short_card("LOAD", load);
     }
-    for (Eigen::Index n = 0; n < step.nodal_forces.size() / 3; ++n) {
-      const Vec3 force = step.nodal_forces.segment<3>(3 * n);
-      if (!force.isZero(0.0)) {
-        io::Fields fields = {number(node_set(k)),
-                             number(static_cast<int>(n) + 1), "0", "1."};
-        append_vector(force, fields);
-        text_ += io::long_card("FORCE", fields);
-      }
+    for (Eigen::Index n = 0; n < step.nodal_forces.size() / 6; ++n) {
+      const auto node = static_cast<int>(n);
+      nodal(k, node, "FORCE", step.nodal_forces.segment<3>(6 * n));
+      nodal(k, node, "MOMENT", step.nodal_forces.segment<3>(6 * n + 3));
     }
     for (const DeckFacetPressure& load : step.pressures) {
       text_ +=
@@ -205,6 +201,14 @@ class ShellBulk {
                                    io::nastran_real(load.pressure)});
     }
     body_loads(step, k);
+  }
+
+  void nodal(int k, int node, const char* card, const Vec3& value) {
+    if (!value.isZero(0.0)) {
+      io::Fields fields = {number(node_set(k)), number(node + 1), "0", "1."};
+      append_vector(value, fields);
+      text_ += io::long_card(card, fields);
+    }
   }
 
   void body_loads(const DeckShellStep& step, int k) {

@@ -37,10 +37,11 @@ void check_step(const ShellDeck& deck, const DeckShellStep& step) {
   const auto nodes = static_cast<int>(deck.nodes.size());
   const auto facets = static_cast<int>(deck.facets.size());
   if (step.nodal_forces.size() != 0 &&
-      step.nodal_forces.size() != Eigen::Index{3} * nodes) {
-    throw InvalidInput(fmt::format(
-        "step '{}' of the deck has {} nodal forces; {} nodes have 3 each",
-        step.name, step.nodal_forces.size(), nodes));
+      step.nodal_forces.size() != Eigen::Index{6} * nodes) {
+    throw InvalidInput(
+        fmt::format("step '{}' of the deck has {} nodal forces and moments; {} "
+                    "nodes have 6 each",
+                    step.name, step.nodal_forces.size(), nodes));
   }
   if (step.supports.empty()) {
     throw InvalidInput(fmt::format(

@@ -44,7 +44,7 @@ struct DeckFacetPressure {
 struct DeckShellStep {
   std::string name;
   std::vector<DeckShellSupport> supports;
-  VectorX nodal_forces;  // [force], 3 per node, or empty
+  VectorX nodal_forces;  // 6 per node: force, moment; or empty
   std::vector<DeckFacetPressure> pressures;
   Vec3 gravity = Vec3::Zero();  // force per mass [length/time^2]
   std::optional<io::DeckSpin> spin;

@@ -24,8 +24,11 @@ const std::vector<case_data::ResponseKind>& kinds_of_shells() {
   return kinds;
 }
 
-bool has_rim(const loads::Surfaces& surfaces) {
-  return std::any_of(surfaces.begin(), surfaces.end(), is_rim);
+/// A traction or a pressure.
+bool is_of_place(const case_data::LoadEntry& load) {
+  return load.place.of_place ||
+         std::any_of(load.traction.begin(), load.traction.end(),
+                     [](const auto& part) { return part.of_place; });
 }
 
 /// Notes of one case with shells.
@@ -164,7 +167,10 @@ class ShellChecks {
                                 "know; {}",
                                 load_case.name, what, instead));
     };
-    const bool on_rim = has_rim(load.surfaces);
+    const auto rims =
+        std::count_if(load.surfaces.begin(), load.surfaces.end(), is_rim);
+    const bool on_rim = rims > 0;
+    const bool on_both = on_rim && rims < std::ssize(load.surfaces);
     if (load.size) {
       return refuse("a load from any direction", "give load cases of forces");
     }
@@ -173,21 +179,20 @@ class ShellChecks {
     }
     switch (load.kind) {
       case case_data::LoadKind::Force:
-        if (on_rim && load.surfaces.size() > 1) {
-          refuse("a force on several rims together",
-                 "give each an entry with its share");
+      case case_data::LoadKind::Remote:
+        if (on_both) {
+          refuse("a force or a moment on rims and films together",
+                 "give both an entry with its share");
         }
         break;
-      case case_data::LoadKind::Remote:
       case case_data::LoadKind::Traction:
-        if (on_rim) {
-          refuse("a moment or a traction on a rim",
-                 "give it a force or a rim_tension");
+        if (on_rim && is_of_place(load)) {
+          refuse("a traction of place on a rim", "give the rim one vector");
         }
         break;
       case case_data::LoadKind::Pressure:
-        if (on_rim || load.place.of_place) {
-          refuse(on_rim ? "a pressure on a rim" : "a pressure of place",
+        if (is_of_place(load)) {
+          refuse("a pressure of place",
                  "give a film one number, or a traction of place");
         }
         break;
@@ -255,6 +260,7 @@ class ShellChecks {
         input_.load_cases[static_cast<std::size_t>(response.load_case)];
     for (const case_data::LoadEntry& load : load_case.loads) {
       const bool pressed = load.kind == case_data::LoadKind::Pressure &&
+                           !is_rim(load.surfaces.front()) &&
                            values.follows_design(load.place.quantity);
       if (pressed || (load.kind == case_data::LoadKind::Gravity &&
                       values.follows_design(load.vector))) {

@@ -6,7 +6,7 @@ import re
 
 # Cards that the decks of this program may have, and no others.
 KNOWN = {"PARAM", "GRDSET", "GRID", "CTETRA", "PSOLID", "MAT1", "SPC1", "LOAD",
-         "FORCE", "PLOAD4", "GRAV", "RFORCE", "TEMP", "TEMPD",
+         "FORCE", "MOMENT", "PLOAD4", "GRAV", "RFORCE", "TEMP", "TEMPD",
          "SPOINT", "CELAS2", "MPC", "MAT9", "CORD2R", "CTRIA6", "PSHELL"}
 # CalculiX's order of the 21 constants of an anisotropic material: pairs of
 # stresses as Nastran counts them (11 22 33 12 23 31).
@@ -133,10 +133,11 @@ def read(text):
             if any(real(x) != 1.0 for x in [f[1], *f[2::2]] if x):
                 raise ValueError("a factor")
             deck.loads[int(f[0])] = [int(x) for x in f[3::2] if x]
-        elif name == "FORCE":
+        elif name in ("FORCE", "MOMENT"):
             scale = real(f[3])
             deck.forces[int(f[0])].append(
-                (int(f[1]), [scale * real(x) for x in f[4:7]]))
+                (int(f[1]), 1 if name == "FORCE" else 4,
+                 [scale * real(x) for x in f[4:7]]))
         elif name == "PLOAD4":
             on, off = (*f, "", "", "", "")[6:8]  # of shells there are none
             deck.pressures[int(f[0])].append(
@@ -243,8 +244,8 @@ def load_lines(deck, part):
     out = []
     if part in deck.forces:
         out.append("*CLOAD")
-        out += [f"{n}, {k + 1}, {force[k]:.12e}"
-                for n, force in deck.forces[part] for k in range(3)
+        out += [f"{n}, {first + k}, {force[k]:.12e}"
+                for n, first, force in deck.forces[part] for k in range(3)
                 if force[k] != 0.0]
     if part in deck.pressures:
         out.append("*DLOAD")

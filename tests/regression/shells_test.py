@@ -83,6 +83,8 @@ supports = [{ on = "skin/rim:low", fix = "xyz", fix_rotation = "xyz" }]
 loads = [
   { on = "skin/rim:high", force = [1000, 0, "ring * 10"] },
   { on = "skin/rim:high", rim_tension = "20 * inside" },
+  { on = "skin/rim:high", pressure = "3 * inside" },
+  { on = ["skin/rim:high", "skin/rim:low"], moment = ["1e5 * inside", 3e4, 2e4], at = [0, 0, "ring"] },
   { on = "skin", force = ["100 * inside", 0, 0] },
   { on = "skin", traction = [0, 0.01, "0.001 * x"] },
   { on = "skin/outside", pressure = 0.1 },
@@ -196,6 +198,9 @@ loads = [
   {{ on = "skin/rim:high", rim_tension = "{tension:.3f} + 0.1 * pull" }},
   {{ on = "skin/{face}", pressure = {pressure:.4f} }},
   {{ on = "skin", force = [0, "2 * pull", 1], moment = [0, 100, "pull"], at = ["lean", 0, 20] }},
+  {{ on = "skin/rim:high", force = [1, "pull", 0], moment = [300, 200, "9 * pull"], at = ["2 * lean", 0, 20] }},
+  {{ on = ["skin/rim:high", "skin/rim:low"], force = ["pull", 0, 9] }},
+  {{ on = "skin/rim:high", traction = ["0.1 * pull", 1, -0.5] }},
   {{ gravity = [0, -9810, 0] }},
 ]
 
@@ -487,6 +492,28 @@ class Shells(ProgramTest):
             self.assertLess(abs(responses["dip"] / (tension * reach / 1000)
                                 - 1), 1e-6)
             self.assertLess(abs(responses["peak"] / abs(tension) - 1), 1e-5)
+
+    # A strip by the moment of its end about itself, and a tube clamped at
+    # one end as a beam, its plane sections plane.
+    def test_is_bent_by_the_moments_of_its_rims(self):
+        text = STRIP.replace("force = [0, 0, 0.1]", "moment = [0, -2, 0]")
+        result, _, _ = self.run_case(text, "--no-pictures")
+        dip = 2 * 100 ** 2 / (2 * 1000 * 20 / 12)
+        self.assertLess(abs(result["responses"]["dip"] / dip - 1), 1e-6)
+        text = THICK.format(
+            name="bent", supports=CLAMPED.format("low"),
+            load='{ on = "skin/rim:high", moment = [0, 1e7, 0] }')
+        text = text.replace("buckling = 2\nfrequencies = 4", "buckling = 0")
+        text = text.replace("poisson_ratio = 0.3", "poisson_ratio = 0") + """
+[responses.tip]
+kind = "mean_displacement"
+on = "skin/rim:high"
+direction = [1, 0, 0]
+"""
+        result, _, _ = self.run_case(text, "--no-pictures", name="tube")
+        inertia = math.pi * 50 ** 3 * 5 * (1 + 0.05 ** 2)
+        tip = 1e7 * LENGTH ** 2 / (2 * MODULUS * inertia)
+        self.assertLess(abs(result["responses"]["tip"] / tip - 1), 5e-3)
 
     # The same pull all around leaves a plate of any outline one stress.
     def test_is_stressed_alike_by_the_same_pull_all_around(self):
