@@ -92,6 +92,9 @@ class ShellWriter {
     axes();
     sections();
     nodal_thickness();
+    if (is_heated(deck_)) {
+      add("*INITIAL CONDITIONS, TYPE=TEMPERATURE\nNALL, 0.\n");
+    }
     for (std::size_t s = 0; s < deck_.steps.size(); ++s) {
       write_step(deck_.steps[s], held_[s]);
     }
@@ -249,11 +252,23 @@ class ShellWriter {
         io::one_line(step.name));
     add("*BOUNDARY, OP=NEW\n");
     for (const auto& [node, own] : held) {
+      std::optional<Mat3> frame;
+      if (const auto at = turned_.find(node); at != turned_.end()) {
+        frame = at->second;
+      }
+      const std::array<double, 6> values = held_values(step, node, frame);
       for (std::size_t c = 0; c < own.fixed.size(); ++c) {
         if (own.fixed[c]) {
-          add("{}, {}, {}\n", node + 1, c + 1, c + 1);
+          add("{}, {}, {}", node + 1, c + 1, c + 1);
+          if (values[c] != 0.0) {
+            add(", {:.12e}", values[c]);
+          }
+          add("\n");
         }
       }
+    }
+    if (is_heated(deck_)) {
+      add("*TEMPERATURE, OP=NEW\nNALL, {:.12e}\n", step.temperature_change);
     }
     // Both cards in every step: without them the last step's loads stay.
     add("*CLOAD, OP=NEW\n");

@@ -24,7 +24,7 @@ const std::vector<case_data::ResponseKind>& kinds_of_shells() {
   return kinds;
 }
 
-/// A traction or a pressure.
+/// A traction, a pressure or a temperature.
 bool is_of_place(const case_data::LoadEntry& load) {
   return load.place.of_place ||
          std::any_of(load.traction.begin(), load.traction.end(),
@@ -136,7 +136,7 @@ class ShellChecks {
                             const std::string& what) {
       problems_.add(line, fmt::format("load case '{}' has {}, which shells "
                                       "do not know; hold components (fix, "
-                                      "fix_rotation) at 0",
+                                      "fix_rotation)",
                                       load_case.name, what));
     };
     for (const case_data::SupportEntry& support : load_case.supports) {
@@ -145,8 +145,6 @@ class ShellChecks {
           std::count(ends.begin(), ends.end(), support.support.surface) > 0;
       if (support.support.kind != loads::SupportKind::Components && !is_end) {
         refuse(support.line, "a support along normals");
-      } else if (support.displacement) {
-        refuse(support.line, "an enforced displacement");
       } else if (support.at && follows_design(*support.at)) {
         refuse(support.line, "a support at a point that follows the design");
       }
@@ -202,7 +200,9 @@ class ShellChecks {
         }
         break;
       case case_data::LoadKind::Temperature:
-        refuse("a temperature", "take [walls] for it");
+        if (is_of_place(load)) {
+          refuse("a temperature of place", "give it one number");
+        }
         break;
       case case_data::LoadKind::Preload:
         refuse("a bolt", "give its force to a film or a rim");
@@ -248,10 +248,28 @@ class ShellChecks {
     } else if (response.kind == case_data::ResponseKind::VonMisesNorm ||
                response.kind == case_data::ResponseKind::BucklingFactor) {
       check_stress_by_loads(response);
+    } else if (response.kind == case_data::ResponseKind::StrainEnergy) {
+      check_energy_of_loads(response);
     }
   }
 
-  /// Pressures and weight stress a wall beside what they move it by.
+  /// Part of the energy is in what free expansion is held back by.
+  void check_energy_of_loads(const case_data::ResponseEntry& response) {
+    const case_data::LoadCaseEntry& load_case =
+        input_.load_cases[static_cast<std::size_t>(response.load_case)];
+    for (const case_data::LoadEntry& load : load_case.loads) {
+      if (load.kind == case_data::LoadKind::Temperature) {
+        problems_.add(
+            response.line,
+            fmt::format("responses.{} is the strain_energy of load case '{}', "
+                        "which has a temperature; of shells take compliance",
+                        response.name, load_case.name));
+      }
+    }
+  }
+
+  /// Pressures, temperatures and weight stress a wall beside what they move it
+  /// by.
   void check_stress_by_loads(const case_data::ResponseEntry& response) {
     std::vector<std::string> found;
     const case_data::CaseValues values(
@@ -262,15 +280,21 @@ class ShellChecks {
       const bool pressed = load.kind == case_data::LoadKind::Pressure &&
                            !is_rim(load.surfaces.front()) &&
                            values.follows_design(load.place.quantity);
-      if (pressed || (load.kind == case_data::LoadKind::Gravity &&
-                      values.follows_design(load.vector))) {
+      const bool heated = load.kind == case_data::LoadKind::Temperature &&
+                          (values.follows_design(load.place.quantity) ||
+                           values.follows_design(load.number));
+      if (pressed || heated ||
+          (load.kind == case_data::LoadKind::Gravity &&
+           values.follows_design(load.vector))) {
         problems_.add(
             response.line,
             fmt::format("responses.{} is of load case '{}', whose {} follows "
                         "the design, which {} of shells cannot yet; give it "
                         "a fixed number",
                         response.name, load_case.name,
-                        pressed ? "pressure" : "gravity",
+                        pressed  ? "pressure"
+                        : heated ? "temperature"
+                                 : "gravity",
                         case_data::row_of(response.kind).name));
       }
     }

@@ -113,6 +113,9 @@ shell::ShellLoads facet_loads_of(const ShellPart& part,
                                  const loads::LoadCase& load_case) {
   shell::ShellLoads result;
   result.gravity = load_case.gravity;
+  if (const auto& heat = load_case.temperature) {
+    result.temperature = {.mean = heat->value - heat->reference};
+  }
   for (const loads::SurfacePressure& load : load_case.pressures) {
     if (!is_rim(load.surface)) {
       add_pressure(part, load, result);

@@ -27,6 +27,7 @@ struct ShellCase {
   ShellActions actions;
   std::shared_ptr<const shell::ShellSystem> system;  // of cases held alike
   VectorX displacement;                              // 6 per node
+  VectorX reaction;                                  // the same: K u - f
   std::vector<shell::FacetStress> stress;  // means at nodes; once, at the end
 };
 
