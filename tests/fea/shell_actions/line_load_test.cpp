@@ -277,9 +277,10 @@ ShellMesh tube(int around, int along) {
 /// Plane sections: a cantilever of a tube, turned by a moment at its end.
 TEST(LineLoad, ABendingMomentBendsATubeAsABeam) {
   constexpr double kModulus = 1e3, kMoment = 5.0;
+  // The moments of the wall's end are those of a flat wall: r t / (12^1/2 L^2).
+  constexpr double kNear = 1e-3;
   const double I = kPi * std::pow(kRadius, 3) * kWall *
                    (1.0 + std::pow(0.5 * kWall / kRadius, 2));
-  double before = 0.0;
   double worst_before = 0.0;
   for (const int n : {8, 16}) {
     const ShellMesh mesh = tube(n, n);
@@ -305,10 +306,10 @@ TEST(LineLoad, ABendingMomentBendsATubeAsABeam) {
     const LineGradient moved = line_gradient(mesh, load, u, nullptr);
     const double sinks = kMoment * kLong * kLong / (2.0 * kModulus * I);
     const double off = std::abs(moved.by_force.z() / -sinks - 1.0);
-    EXPECT_LT(off, n == 8 ? 2e-2 : 2e-3);
+    EXPECT_LT(off, kNear);
     EXPECT_LT(
         std::abs(moved.by_moment.y() * kModulus * I / (kMoment * kLong) - 1.0),
-        n == 8 ? 2e-2 : 2e-3);
+        kNear);
     // M z / I in the middle of the wall, off both ends.
     const auto stress =
         averaged_stress(mesh, shell_stress(mesh, sections, loads, u));
@@ -325,11 +326,9 @@ TEST(LineLoad, ABendingMomentBendsATubeAsABeam) {
     }
     EXPECT_LT(worst, n == 8 ? 0.06 : 0.015);
     if (n == 16) {
-      EXPECT_GT(before / off, 4.0) << before << " " << off;
       EXPECT_GT(worst_before / worst, 3.0) << worst_before << " " << worst;
     }
     worst_before = worst;
-    before = off;
   }
 }
 
