@@ -1,5 +1,7 @@
 #include "fea/shell/facet_loads.h"
 
+#include <algorithm>
+
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
@@ -70,16 +72,27 @@ WholeVector pressure_forces(const Facet& facet, const FacetLoad& load) {
   return f;
 }
 
-/// What pulls on its edges.
-WholeVector pull_forces(const Facet& facet, const FacetLoad& load) {
+/// What acts along its edges; on the wall's end in the middle of the wall.
+WholeVector edge_forces(const Facet& facet, const FacetLoad& load) {
   const auto X = triples(facet);
   WholeVector f = WholeVector::Zero();
   for (int e = 0; e < 3; ++e) {
+    const EdgeForces& own = load.edges[e];
+    if (!own.acts()) {
+      continue;
+    }
     for (const EdgePoint& p : edge_rules()[e]) {
-      const Vec3 force =
-          load.pull[e] * p.weight * as_vector(edge_conormal(X, p));
+      const EdgeFrame<double> frame = edge_frame(X, p);
+      const Vec3 out = as_vector(frame.conormal);
+      const double t = thickness_at(facet, p.at);
+      const Vec3 on_end =
+          p.weight * t * (out.norm() * own.traction - own.pressure * out);
+      const Vec3 force = p.weight * own.pull * out + on_end;
+      const Vec3 moment =
+          facet.offset * t * as_vector(frame.normal).cross(on_end);
       for (int i = 0; i < kNodes; ++i) {
         f.segment<3>(6 * i) += p.at.shape[i] * force;
+        f.segment<3>(6 * i + 3) += p.at.shape[i] * moment;
       }
     }
   }
@@ -96,7 +109,25 @@ bool FacetLoad::presses() const {
   return negative != 0.0 || middle != 0.0 || positive != 0.0;
 }
 
-bool FacetLoad::pulls() const { return pull != std::array<double, 3>{}; }
+bool FacetLoad::pulls() const {
+  return std::any_of(edges.begin(), edges.end(),
+                     [](const EdgeForces& edge) { return edge.acts(); });
+}
+
+namespace {
+
+/// Where an edge's load adds up.
+EdgeForces& edge_of(std::vector<FacetLoad>& sums, int facet, int edge,
+                    const char* what) {
+  const int facets = static_cast<int>(sums.size());
+  if (facet < 0 || facet >= facets || edge < 0 || edge > 2) {
+    throw InvalidInput(fmt::format("a {} acts on edge {} of facet {} of {}",
+                                   what, edge, facet, facets));
+  }
+  return sums[facet].edges[edge];
+}
+
+}  // namespace
 
 std::vector<FacetLoad> facet_loads(const ShellMesh& mesh,
                                    const ShellLoads& loads) {
@@ -121,12 +152,12 @@ std::vector<FacetLoad> facet_loads(const ShellMesh& mesh,
     }
   }
   for (const EdgePull& load : loads.pulls) {
-    if (load.facet < 0 || load.facet >= facets || load.edge < 0 ||
-        load.edge > 2) {
-      throw InvalidInput(fmt::format("a pull acts on edge {} of facet {} of {}",
-                                     load.edge, load.facet, facets));
-    }
-    sums[load.facet].pull[load.edge] += load.force;
+    edge_of(sums, load.facet, load.edge, "pull").pull += load.force;
+  }
+  for (const EdgeTraction& load : loads.tractions) {
+    EdgeForces& sum = edge_of(sums, load.facet, load.edge, "traction");
+    sum.traction += load.traction;
+    sum.pressure += load.pressure;
   }
   return sums;
 }
@@ -152,7 +183,7 @@ WholeVector facet_forces(const Facet& facet, const ShellLoads& loads,
     f += pressure_forces(facet, own);
   }
   if (own.pulls()) {
-    f += pull_forces(facet, own);
+    f += edge_forces(facet, own);
   }
   if (loads.temperature || own.presses()) {
     f += holding_forces(facet, wall_state(loads, own));

@@ -12,12 +12,23 @@ namespace meniscus::shell {
 /// Weight or spin.
 bool has_mass_loads(const ShellLoads& loads);
 
-/// Pressures and pulls on one facet.
+/// What acts along one edge of a facet.
+struct EdgeForces {
+  double pull = 0.0;  // per length
+  Vec3 traction = Vec3::Zero();
+  double pressure = 0.0;
+
+  bool acts() const {
+    return pull != 0.0 || pressure != 0.0 || traction != Vec3::Zero();
+  }
+};
+
+/// Pressures and forces along edges of one facet.
 struct FacetLoad {
   double negative = 0.0;
   double middle = 0.0;
   double positive = 0.0;
-  std::array<double, 3> pull = {};  // per edge
+  std::array<EdgeForces, 3> edges = {};
 
   bool presses() const;
   bool pulls() const;

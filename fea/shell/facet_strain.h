@@ -115,10 +115,16 @@ FacetFrame<T> facet_frame(const std::array<Triple<T>, kNodes>& X,
   return f;
 }
 
-/// Along a facet's edge: its conormal, out of the facet, times the length over
-/// the reference coordinate's.
+/// Along a facet's edge.
 template <class T>
-Triple<T> edge_conormal(const std::array<Triple<T>, kNodes>& X,
+struct EdgeFrame {
+  Triple<T> conormal;  // out of the facet, times the length over the reference
+                       // coordinate's
+  Triple<T> normal;    // the facet's, unit
+};
+
+template <class T>
+EdgeFrame<T> edge_frame(const std::array<Triple<T>, kNodes>& X,
                         const EdgePoint& p) {
   const FacetFrame<T> frame = facet_frame(X, p.at, nullptr);
   Triple<T> tangent{};
@@ -126,7 +132,7 @@ Triple<T> edge_conormal(const std::array<Triple<T>, kNodes>& X,
     const double slope = p.at.slope.row(j).dot(p.along);
     tangent = plus(tangent, slope, X[j]);
   }
-  return cross(tangent, frame.axes[2]);
+  return {cross(tangent, frame.axes[2]), frame.axes[2]};
 }
 
 /// Along the frame's axes: [i][j] is component j of the derivative along i.

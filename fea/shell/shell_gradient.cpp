@@ -145,22 +145,35 @@ Taped outer_work(const TapedPoint& at, const ShellLoads& loads,
   return sum;
 }
 
-/// What pulls on the facet's edges do on v.
-Taped edge_work(const std::array<Triple<Taped>, kNodes>& X,
+/// What acts along the facet's edges does on v.
+Taped edge_work(const Facet& facet, const TapedFacet& taped,
                 const FacetLoad& own, const WholeField& v) {
   Taped sum(0.0);
   for (int e = 0; e < 3; ++e) {
-    if (own.pull[e] == 0.0) {
+    const EdgeForces& forces = own.edges[e];
+    if (!forces.acts()) {
       continue;
     }
+    const Vec3& q = forces.traction;
     for (const EdgePoint& p : edge_rules()[e]) {
-      Vec3 u = Vec3::Zero();
+      Vec3 moved = Vec3::Zero();
+      Vec3 turned = Vec3::Zero();
       for (int i = 0; i < kNodes; ++i) {
-        u += p.at.shape[i] * v.nodes.col(i).head<3>();
+        moved += p.at.shape[i] * v.nodes.col(i).head<3>();
+        turned += p.at.shape[i] * v.nodes.col(i).tail<3>();
       }
-      sum =
-          sum + own.pull[e] * p.weight *
-                    dot(edge_conormal(X, p), Triple<double>{u[0], u[1], u[2]});
+      const Triple<double> u = {moved[0], moved[1], moved[2]};
+      const Triple<double> theta = {turned[0], turned[1], turned[2]};
+      const EdgeFrame<Taped> frame = edge_frame(taped.X, p);
+      const Taped t = taped.thickness_at(p.at);
+      const Taped length = sqrt(dot(frame.conormal, frame.conormal));
+      const Triple<Taped> middle =
+          plus(times(facet.offset * t, cross(theta, frame.normal)), 1.0, u);
+      sum = sum +
+            p.weight *
+                (forces.pull * dot(frame.conormal, u) +
+                 t * (length * dot(middle, Triple<double>{q[0], q[1], q[2]}) -
+                      forces.pressure * dot(frame.conormal, middle)));
     }
   }
   return sum;
@@ -180,7 +193,7 @@ FacetGradient facet_gradient(const FacetResidual& residual, Tape& tape) {
   const Triple<Taped> of_v = taped.bubble(residual.v.bubble);
   const Triple<Taped> of_u = taped.bubble(residual.u.bubble);
   const WallState state = wall_state(residual.loads, residual.own);
-  Taped sum = edge_work(taped.X, residual.own, residual.v);
+  Taped sum = edge_work(facet, taped, residual.own, residual.v);
   for (const FacetPoint& p : facet_rule()) {
     const TapedPoint at = taped_point(facet, taped, p);
     const FacetFrame<Taped>& frame = at.wall.frame;

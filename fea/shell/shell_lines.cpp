@@ -29,16 +29,6 @@ double line_length(const ShellMesh& mesh, const Line& line) {
   return length;
 }
 
-void add_length_gradient(const ShellMesh& mesh, const Line& line, double factor,
-                         Points& gradient) {
-  along_line(mesh, line, [&](const auto& edge, const LinePoint& p) {
-    for (std::size_t k = 0; k < edge.size(); ++k) {
-      gradient[edge[k]] +=
-          factor * p.weight * p.slope[k] * p.tangent.normalized();
-    }
-  });
-}
-
 LineMean mean_displacement(const ShellMesh& mesh, const Line& line,
                            const Vec3& direction, const VectorX& displacement) {
   const double length = line_length(mesh, line);

@@ -13,10 +13,6 @@ using Line = std::vector<std::array<int, 3>>;
 
 double line_length(const ShellMesh& mesh, const Line& line);  // [length]
 
-/// Adds `factor` times the derivative of the length, one per node.
-void add_length_gradient(const ShellMesh& mesh, const Line& line, double factor,
-                         Points& gradient);
-
 /// A mean over a line and its derivatives, all else held.
 struct LineMean {
   double value = 0.0;

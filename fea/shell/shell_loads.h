@@ -31,6 +31,15 @@ struct EdgePull {
   double force = 0.0;  // [force/length]
 };
 
+/// On the end of the wall along an edge, over its thickness: force per area,
+/// and pressure into the wall. By the edge's length on the surface.
+struct EdgeTraction {
+  int facet = 0;
+  int edge = 0;                  // as EdgePull has it
+  Vec3 traction = Vec3::Zero();  // [pressure]
+  double pressure = 0.0;         // [pressure]
+};
+
 /// Force and moment per length of an edge.
 struct EdgeLoad {
   std::array<int, 3> nodes = {};  // from, to, middle
@@ -47,6 +56,7 @@ struct WallTemperature {
 struct ShellLoads {
   std::vector<FacetPressure> pressures;
   std::vector<EdgePull> pulls;
+  std::vector<EdgeTraction> tractions;
   std::vector<EdgeLoad> edges;
   Vec3 gravity = Vec3::Zero();  // force per mass [length/time^2]
   std::optional<loads::Spin> spin;

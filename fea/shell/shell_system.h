@@ -39,6 +39,9 @@ class ShellSystem {
   /// the adjoint of a functional's derivative.
   VectorX solve_forces(const VectorX& forces) const;
 
+  /// K u of all nodes, 6 numbers each, as `u` has.
+  VectorX stiffness_times(const VectorX& u) const;
+
   const ShellFreedom& freedom() const { return freedom_; }
   const ShellFactor& factor() const { return *factor_; }
   /// Stiffness on the unknowns, lower triangle; assembled anew.
@@ -53,7 +56,6 @@ class ShellSystem {
 
  private:
   FacetMatrix stiffness_of(int facet) const;
-  VectorX stiffness_times(const VectorX& u) const;
 
   const ShellMesh& mesh_;
   const std::vector<Section>& sections_;

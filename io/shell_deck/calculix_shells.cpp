@@ -78,7 +78,7 @@ class ShellWriter {
         }
       }
     }
-    find_eccentric();
+    find_turned();
     for (std::size_t s = 0; s < deck.sections.size(); ++s) {
       even_.push_back(even_thickness(deck, static_cast<int>(s)));
     }
@@ -92,6 +92,9 @@ class ShellWriter {
     axes();
     sections();
     nodal_thickness();
+    if (is_heated(deck_)) {
+      add("*INITIAL CONDITIONS, TYPE=TEMPERATURE\nNALL, 0.\n");
+    }
     for (std::size_t s = 0; s < deck_.steps.size(); ++s) {
       write_step(deck_.steps[s], held_[s]);
     }
@@ -105,19 +108,19 @@ class ShellWriter {
   }
   io::Out out() { return std::back_inserter(buffer_); }
 
-  /// Nodes beside their wall that forces act on, but those that are held.
-  void find_eccentric() {
+  /// Nodes that moments about the middle of the wall act on, but those that are
+  /// held.
+  void find_turned() {
     const auto is_held = [&](int node) {
       return std::any_of(held_.begin(), held_.end(), [node](const auto& step) {
         return step.contains(node);
       });
     };
     for (const DeckShellStep& step : deck_.steps) {
-      for (Eigen::Index n = 0; n < step.nodal_forces.size() / 3; ++n) {
+      for (Eigen::Index n = 0; n < step.nodal_forces.size() / 6; ++n) {
         const auto node = static_cast<int>(n);
-        if (!step.nodal_forces.segment<3>(3 * n).isZero(0.0) &&
-            !walls_.to_middle[node].isZero(0.0) && !is_held(node)) {
-          eccentric_.insert(node);
+        if (!moment_on(step, node).isZero(0.0) && !is_held(node)) {
+          has_moment_.insert(node);
           // CalculiX takes moments about two axes in a wall, none about its
           // normal.
           const Vec3& normal = walls_.normals[node];
@@ -249,11 +252,23 @@ class ShellWriter {
         io::one_line(step.name));
     add("*BOUNDARY, OP=NEW\n");
     for (const auto& [node, own] : held) {
+      std::optional<Mat3> frame;
+      if (const auto at = turned_.find(node); at != turned_.end()) {
+        frame = at->second;
+      }
+      const std::array<double, 6> values = held_values(step, node, frame);
       for (std::size_t c = 0; c < own.fixed.size(); ++c) {
         if (own.fixed[c]) {
-          add("{}, {}, {}\n", node + 1, c + 1, c + 1);
+          add("{}, {}, {}", node + 1, c + 1, c + 1);
+          if (values[c] != 0.0) {
+            add(", {:.12e}", values[c]);
+          }
+          add("\n");
         }
       }
+    }
+    if (is_heated(deck_)) {
+      add("*TEMPERATURE, OP=NEW\nNALL, {:.12e}\n", step.temperature_change);
     }
     // Both cards in every step: without them the last step's loads stay.
     add("*CLOAD, OP=NEW\n");
@@ -267,19 +282,26 @@ class ShellWriter {
         "*NODE PRINT, NSET=NALL, GLOBAL=YES\nU\n*END STEP\n");
   }
 
-  /// Along the node's own axes where it has them; with the moment about the
-  /// middle of the wall.
+  /// About the middle of the wall.
+  Vec3 moment_on(const DeckShellStep& step, int node) const {
+    const Eigen::Index first = Eigen::Index{6} * node;
+    const Vec3 force = step.nodal_forces.segment<3>(first);
+    return step.nodal_forces.segment<3>(first + 3) +
+           force.cross(walls_.to_middle[node]);
+  }
+
+  /// Along the node's own axes where it has them.
   void forces(const DeckShellStep& step) {
-    for (Eigen::Index n = 0; n < step.nodal_forces.size() / 3; ++n) {
+    for (Eigen::Index n = 0; n < step.nodal_forces.size() / 6; ++n) {
       const auto node = static_cast<int>(n);
-      Vec3 force = step.nodal_forces.segment<3>(3 * n);
-      Vec3 moment = force.cross(walls_.to_middle[node]);
+      Vec3 force = step.nodal_forces.segment<3>(6 * n);
+      Vec3 moment = moment_on(step, node);
       if (const auto own = turned_.find(node); own != turned_.end()) {
         force = own->second.transpose() * force;
         moment = own->second.transpose() * moment;
       }
       add_components(node, 1, force, 3);
-      if (eccentric_.contains(node)) {
+      if (has_moment_.contains(node)) {
         add_components(node, 4, moment, 2);
       }
     }
@@ -315,7 +337,7 @@ class ShellWriter {
   NodeWalls walls_;
   std::vector<std::map<int, HeldShellNode>> held_;  // per step
   std::map<int, Mat3> turned_;               // nodes with a frame of their own
-  std::set<int> eccentric_;                  // nodes whose forces have moments
+  std::set<int> has_moment_;                 // nodes that moments act on
   std::vector<std::optional<double>> even_;  // per section: its one thickness
   fmt::memory_buffer buffer_;
 };

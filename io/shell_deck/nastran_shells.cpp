@@ -24,6 +24,7 @@ constexpr int sum_set(int k) { return 10 * k; }
 constexpr int node_set(int k) { return 10 * k + 1; }
 constexpr int gravity_set(int k) { return 10 * k + 2; }
 constexpr int turning_set(int k) { return 10 * k + 3; }
+constexpr int heat_set(int k) { return 10 * k + 4; }
 
 /// What the LOAD card of a step puts together.
 io::Fields sets_of_load(const DeckShellStep& step, int k) {
@@ -101,6 +102,9 @@ class ShellBulk {
       if (!sets_of_load(deck_.steps[s], k).empty()) {
         text_ += fmt::format("  LOAD = {}\n", sum_set(k));
       }
+      if (is_heated(deck_)) {
+        text_ += fmt::format("  TEMPERATURE(LOAD) = {}\n", heat_set(k));
+      }
     }
   }
 
@@ -176,10 +180,20 @@ class ShellBulk {
       }
       io::Fields fields = {number(k), components};
       for (const int node : support.nodes) {
-        fields.push_back(number(node + 1));
+        if (!enforced(step, support, node, k)) {
+          fields.push_back(number(node + 1));
+        }
       }
-      if (!components.empty()) {
+      if (!components.empty() && fields.size() > 2) {
         text_ += io::short_card("SPC1", fields);
+      }
+    }
+    if (is_heated(deck_)) {
+      // Every node: a default is one for all subcases to some readers.
+      for (std::size_t n = 0; n < deck_.nodes.size(); ++n) {
+        text_ += io::long_card(
+            "TEMP", {number(heat_set(k)), number(static_cast<int>(n) + 1),
+                     io::nastran_real(step.temperature_change)});
       }
     }
     const io::Fields sets = sets_of_load(step, k);
@@ -190,14 +204,10 @@ class ShellBulk {
       }
       text_ += io::short_card("LOAD", load);
     }
-    for (Eigen::Index n = 0; n < step.nodal_forces.size() / 3; ++n) {
-      const Vec3 force = step.nodal_forces.segment<3>(3 * n);
-      if (!force.isZero(0.0)) {
-        io::Fields fields = {number(node_set(k)),
-                             number(static_cast<int>(n) + 1), "0", "1."};
-        append_vector(force, fields);
-        text_ += io::long_card("FORCE", fields);
-      }
+    for (Eigen::Index n = 0; n < step.nodal_forces.size() / 6; ++n) {
+      const auto node = static_cast<int>(n);
+      nodal(k, node, "FORCE", step.nodal_forces.segment<3>(6 * n));
+      nodal(k, node, "MOMENT", step.nodal_forces.segment<3>(6 * n + 3));
     }
     for (const DeckFacetPressure& load : step.pressures) {
       text_ +=
@@ -205,6 +215,36 @@ class ShellBulk {
                                    io::nastran_real(load.pressure)});
     }
     body_loads(step, k);
+  }
+
+  /// A card for each component of a node that is held at other than 0.
+  bool enforced(const DeckShellStep& step, const DeckShellSupport& support,
+                int node, int k) {
+    std::optional<Mat3> frame;
+    if (const auto at = turned_.find(node); at != turned_.end()) {
+      frame = at->second;
+    }
+    const std::array<double, 6> values = held_values(step, node, frame);
+    bool any = false;
+    for (std::size_t c = 0; c < values.size(); ++c) {
+      any = any || (support.fixed[c] && values[c] != 0.0);
+    }
+    for (std::size_t c = 0; any && c < values.size(); ++c) {
+      if (support.fixed[c]) {
+        text_ += io::long_card("SPC", {number(k), number(node + 1),
+                                       number(static_cast<int>(c) + 1),
+                                       io::nastran_real(values[c])});
+      }
+    }
+    return any;
+  }
+
+  void nodal(int k, int node, const char* card, const Vec3& value) {
+    if (!value.isZero(0.0)) {
+      io::Fields fields = {number(node_set(k)), number(node + 1), "0", "1."};
+      append_vector(value, fields);
+      text_ += io::long_card(card, fields);
+    }
   }
 
   void body_loads(const DeckShellStep& step, int k) {

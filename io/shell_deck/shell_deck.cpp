@@ -1,5 +1,7 @@
 #include "io/shell_deck/shell_deck.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "core/error.h"
@@ -37,10 +39,17 @@ void check_step(const ShellDeck& deck, const DeckShellStep& step) {
   const auto nodes = static_cast<int>(deck.nodes.size());
   const auto facets = static_cast<int>(deck.facets.size());
   if (step.nodal_forces.size() != 0 &&
-      step.nodal_forces.size() != Eigen::Index{3} * nodes) {
+      step.nodal_forces.size() != Eigen::Index{6} * nodes) {
+    throw InvalidInput(
+        fmt::format("step '{}' of the deck has {} nodal forces and moments; {} "
+                    "nodes have 6 each",
+                    step.name, step.nodal_forces.size(), nodes));
+  }
+  if (step.held_at.size() != 0 &&
+      step.held_at.size() != Eigen::Index{6} * nodes) {
     throw InvalidInput(fmt::format(
-        "step '{}' of the deck has {} nodal forces; {} nodes have 3 each",
-        step.name, step.nodal_forces.size(), nodes));
+        "step '{}' of the deck holds nodes at {} numbers; {} nodes have 6 each",
+        step.name, step.held_at.size(), nodes));
   }
   if (step.supports.empty()) {
     throw InvalidInput(fmt::format(
@@ -86,6 +95,26 @@ std::optional<double> even_thickness(const ShellDeck& deck, int section) {
     }
   }
   return even;
+}
+
+bool is_heated(const ShellDeck& deck) {
+  return std::any_of(
+      deck.steps.begin(), deck.steps.end(),
+      [](const DeckShellStep& s) { return s.temperature_change != 0.0; });
+}
+
+std::array<double, 6> held_values(const DeckShellStep& step, int node,
+                                  const std::optional<Mat3>& frame) {
+  std::array<double, 6> values = {};
+  if (step.held_at.size() != 0) {
+    const Mat3 axes = frame.value_or(Mat3::Identity());
+    const Eigen::Index first = Eigen::Index{6} * node;
+    for (int k = 0; k < 6; ++k) {
+      values[static_cast<std::size_t>(k)] =
+          axes.col(k % 3).dot(step.held_at.segment<3>(first + k / 3 * 3));
+    }
+  }
+  return values;
 }
 
 bool needs_axes(const std::array<bool, 6>& fixed) {

@@ -27,7 +27,7 @@ struct DeckNodeSet {
   std::vector<int> nodes;  // from 0, ascending
 };
 
-/// Components that are held at 0: displacements 1 2 3, rotations about 1 2 3.
+/// Components that are held: displacements 1 2 3, rotations about 1 2 3.
 struct DeckShellSupport {
   std::vector<int> nodes;  // from 0
   std::array<bool, 6> fixed = {};
@@ -44,10 +44,12 @@ struct DeckFacetPressure {
 struct DeckShellStep {
   std::string name;
   std::vector<DeckShellSupport> supports;
-  VectorX nodal_forces;  // [force], 3 per node, or empty
+  VectorX held_at;       // 6 per node: displacement, rotation; or empty: 0
+  VectorX nodal_forces;  // 6 per node: force, moment; or empty
   std::vector<DeckFacetPressure> pressures;
   Vec3 gravity = Vec3::Zero();  // force per mass [length/time^2]
   std::optional<io::DeckSpin> spin;
+  double temperature_change = 0.0;  // of all nodes
 };
 
 struct ShellDeck {
@@ -67,6 +69,13 @@ void check_shell_deck(const ShellDeck& deck);
 
 /// The one thickness of a section's facets, where they have one.
 std::optional<double> even_thickness(const ShellDeck& deck, int section);
+
+/// Some step has a change of temperature.
+bool is_heated(const ShellDeck& deck);
+
+/// What a node's components are held at along its frame, or x y z without one.
+std::array<double, 6> held_values(const DeckShellStep& step, int node,
+                                  const std::optional<Mat3>& frame);
 
 /// Three displacements, or rotations, held together are so along any axes.
 bool needs_axes(const std::array<bool, 6>& fixed);

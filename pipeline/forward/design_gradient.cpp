@@ -64,6 +64,11 @@ class Adjoint {
     return in_.part.input.responses[backward.response];
   }
 
+  const loads::LoadCase& load_case_of(const BackwardCase& back) const {
+    return in_.context.inputs
+        .load_cases[static_cast<std::size_t>(back.load_case)];
+  }
+
   const GradientInput& in_;
   std::vector<Backward> backwards_;
 };
@@ -97,13 +102,18 @@ void Adjoint::solve_shell_adjoints(DesignGradient& result) {
       back.load_case = partials.load_case;
       if (partials.self_adjoint != 0.0) {
         back.lambda = partials.self_adjoint * solved.displacement;
+        back.adjoint_reactions = partials.self_adjoint * solved.reaction;
         continue;
       }
-      const VectorX& right = partials.by_displacement;
-      back.lambda =
-          solved.system->solve_forces(right.size() == solved.displacement.size()
-                                          ? right
-                                          : shell::with_rotations(right));
+      VectorX right = partials.by_displacement;
+      if (right.size() != solved.displacement.size()) {
+        right = shell::with_rotations(right);
+      }
+      back.lambda = solved.system->solve_forces(right);
+      if (loads::enforces(load_case_of(back))) {
+        back.adjoint_reactions =
+            solved.system->stiffness_times(back.lambda) - right;
+      }
       ++result.solves;
     }
   }
@@ -315,8 +325,14 @@ double Adjoint::load_rate(const Backward& backward, std::size_t k,
       by_forces.size() > 0) {
     v += by_forces;
   }
-  return shells::work_rate(*in_.context.shell, in_.context.inputs.load_cases[c],
-                           rates.load_cases[c], v);
+  const loads::LoadCase& load_case = load_case_of(back);
+  double rate =
+      shells::work_rate(*in_.context.shell, load_case, rates.load_cases[c], v);
+  if (loads::enforces(load_case)) {
+    rate += shells::held_rate(*in_.context.shell, load_case,
+                              rates.load_cases[c], back.adjoint_reactions);
+  }
+  return rate;
 }
 
 /// The response's derivative by the variable that `rates` belong to.

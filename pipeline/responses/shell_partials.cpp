@@ -18,26 +18,53 @@ ResponsePartials shell_to_partials(shell::ShellGradient gradient) {
   return result;
 }
 
-/// Work of the loads, or half of it: nothing else does any.
+/// u . K u / 2, which what is held at other than 0 has a part in.
+ResponsePartials enforced_energy(const ResponseTask& task,
+                                 const VectorX& inner) {
+  const shells::ShellPart& part = *task.fields.shell;
+  const VectorX& u =
+      part.cases[static_cast<std::size_t>(task.response.load_case)]
+          .displacement;
+  ResponsePartials result;
+  if (task.derivatives == element::Derivatives::All) {
+    result = shell_to_partials(
+        shell::residual_gradient(part.mesh, part.sections, {}, -0.5 * u, u));
+    result.cases.push_back({.load_case = task.response.load_case,
+                            .by_displacement = inner,
+                            .by_forces = {},
+                            .by_temperature = {}});
+  }
+  result.value = 0.5 * u.dot(inner);
+  return result;
+}
+
+/// Work of the loads, or half of it where nothing else does any.
 ResponsePartials shell_energy(const ResponseTask& task) {
   const auto load_case = static_cast<std::size_t>(task.response.load_case);
   const shells::ShellPart& part = *task.fields.shell;
   const shells::ShellCase& own = part.cases[load_case];
   const VectorX& u = own.displacement;
-  const double share =
-      task.response.kind == case_data::ResponseKind::StrainEnergy ? 0.5 : 1.0;
+  const VectorX forces =
+      shell::nodal_forces(part.mesh, part.sections, own.actions.loads);
+  const bool strain =
+      task.response.kind == case_data::ResponseKind::StrainEnergy;
+  const bool enforced =
+      loads::enforces(task.fields.inputs.load_cases[load_case]);
+  if (strain && enforced) {
+    return enforced_energy(task, forces + own.reaction);
+  }
+  const double share = strain ? 0.5 : 1.0;
   ResponsePartials result;
   if (task.derivatives == element::Derivatives::All) {
     result = shell_to_partials(shells::work_gradient(part, load_case, share * u,
                                                      VectorX::Zero(u.size())));
     result.cases.push_back({.load_case = task.response.load_case,
-                            .by_displacement = {},
-                            .self_adjoint = share,
+                            .by_displacement = share * forces,
+                            .self_adjoint = enforced ? 0.0 : share,
                             .by_forces = share * u,
                             .by_temperature = {}});
   }
-  result.value = share * u.dot(shell::nodal_forces(part.mesh, part.sections,
-                                                   own.actions.loads));
+  result.value = share * u.dot(forces);
   return result;
 }
 

@@ -64,19 +64,28 @@ std::vector<shell_deck::DeckShellSupport> supports_of(
 shell_deck::DeckShellStep shell_step_of(const shells::ShellPart& part,
                                         const loads::LoadCase& load_case) {
   shell_deck::DeckShellStep step{.name = load_case.name};
-  step.supports = supports_of(shells::node_supports(part, load_case));
+  const std::vector<shell::NodeSupport> supports =
+      shells::node_supports(part, load_case);
+  step.supports = supports_of(supports);
+  if (loads::enforces(load_case)) {
+    step.held_at =
+        shell::ShellFreedom(static_cast<int>(part.mesh.nodes.size()), supports)
+            .held_values();
+  }
   const shell::ShellLoads all = shells::shell_actions(part, load_case).loads;
   shell::ShellLoads others = all;  // than a deck has as such
   others.pressures.clear();
   others.gravity.setZero();
   others.spin.reset();
-  // Without moments: neither rims nor films carry any at nodes.
-  step.nodal_forces = shell::displacements_of(
-      shell::nodal_forces(part.mesh, part.sections, others));
+  others.temperature.reset();
+  step.nodal_forces = shell::nodal_forces(part.mesh, part.sections, others);
   for (const shell::FacetPressure& p : all.pressures) {
     step.pressures.push_back({p.facet, p.pressure});
   }
   step.gravity = all.gravity;
+  if (all.temperature) {
+    step.temperature_change = all.temperature->mean;
+  }
   if (all.spin) {
     step.spin = io::DeckSpin{all.spin->point, all.spin->axis, all.spin->rate};
   }
@@ -104,7 +113,8 @@ shell_deck::ShellDeck shell_deck_of(const case_data::Case& input,
          .material = {.name = material.name,
                       .youngs_modulus = material.youngs_modulus,
                       .poisson_ratio = material.poisson_ratio,
-                      .density = material.density},
+                      .density = material.density,
+                      .thermal_expansion = material.thermal_expansion},
          .offset = part.sections[s].offset});
   }
   // Of a load from any direction, which shells refuse, there are more.

@@ -24,8 +24,11 @@ const std::vector<case_data::ResponseKind>& kinds_of_shells() {
   return kinds;
 }
 
-bool has_rim(const loads::Surfaces& surfaces) {
-  return std::any_of(surfaces.begin(), surfaces.end(), is_rim);
+/// A traction, a pressure or a temperature.
+bool is_of_place(const case_data::LoadEntry& load) {
+  return load.place.of_place ||
+         std::any_of(load.traction.begin(), load.traction.end(),
+                     [](const auto& part) { return part.of_place; });
 }
 
 /// Notes of one case with shells.
@@ -133,7 +136,7 @@ class ShellChecks {
                             const std::string& what) {
       problems_.add(line, fmt::format("load case '{}' has {}, which shells "
                                       "do not know; hold components (fix, "
-                                      "fix_rotation) at 0",
+                                      "fix_rotation)",
                                       load_case.name, what));
     };
     for (const case_data::SupportEntry& support : load_case.supports) {
@@ -142,8 +145,6 @@ class ShellChecks {
           std::count(ends.begin(), ends.end(), support.support.surface) > 0;
       if (support.support.kind != loads::SupportKind::Components && !is_end) {
         refuse(support.line, "a support along normals");
-      } else if (support.displacement) {
-        refuse(support.line, "an enforced displacement");
       } else if (support.at && follows_design(*support.at)) {
         refuse(support.line, "a support at a point that follows the design");
       }
@@ -164,7 +165,10 @@ class ShellChecks {
                                 "know; {}",
                                 load_case.name, what, instead));
     };
-    const bool on_rim = has_rim(load.surfaces);
+    const auto rims =
+        std::count_if(load.surfaces.begin(), load.surfaces.end(), is_rim);
+    const bool on_rim = rims > 0;
+    const bool on_both = on_rim && rims < std::ssize(load.surfaces);
     if (load.size) {
       return refuse("a load from any direction", "give load cases of forces");
     }
@@ -173,21 +177,20 @@ class ShellChecks {
     }
     switch (load.kind) {
       case case_data::LoadKind::Force:
-        if (on_rim && load.surfaces.size() > 1) {
-          refuse("a force on several rims together",
-                 "give each an entry with its share");
+      case case_data::LoadKind::Remote:
+        if (on_both) {
+          refuse("a force or a moment on rims and films together",
+                 "give both an entry with its share");
         }
         break;
-      case case_data::LoadKind::Remote:
       case case_data::LoadKind::Traction:
-        if (on_rim) {
-          refuse("a moment or a traction on a rim",
-                 "give it a force or a rim_tension");
+        if (on_rim && is_of_place(load)) {
+          refuse("a traction of place on a rim", "give the rim one vector");
         }
         break;
       case case_data::LoadKind::Pressure:
-        if (on_rim || load.place.of_place) {
-          refuse(on_rim ? "a pressure on a rim" : "a pressure of place",
+        if (is_of_place(load)) {
+          refuse("a pressure of place",
                  "give a film one number, or a traction of place");
         }
         break;
@@ -197,7 +200,9 @@ class ShellChecks {
         }
         break;
       case case_data::LoadKind::Temperature:
-        refuse("a temperature", "take [walls] for it");
+        if (is_of_place(load)) {
+          refuse("a temperature of place", "give it one number");
+        }
         break;
       case case_data::LoadKind::Preload:
         refuse("a bolt", "give its force to a film or a rim");
@@ -243,10 +248,28 @@ class ShellChecks {
     } else if (response.kind == case_data::ResponseKind::VonMisesNorm ||
                response.kind == case_data::ResponseKind::BucklingFactor) {
       check_stress_by_loads(response);
+    } else if (response.kind == case_data::ResponseKind::StrainEnergy) {
+      check_energy_of_loads(response);
     }
   }
 
-  /// Pressures and weight stress a wall beside what they move it by.
+  /// Part of the energy is in what free expansion is held back by.
+  void check_energy_of_loads(const case_data::ResponseEntry& response) {
+    const case_data::LoadCaseEntry& load_case =
+        input_.load_cases[static_cast<std::size_t>(response.load_case)];
+    for (const case_data::LoadEntry& load : load_case.loads) {
+      if (load.kind == case_data::LoadKind::Temperature) {
+        problems_.add(
+            response.line,
+            fmt::format("responses.{} is the strain_energy of load case '{}', "
+                        "which has a temperature; of shells take compliance",
+                        response.name, load_case.name));
+      }
+    }
+  }
+
+  /// Pressures, temperatures and weight stress a wall beside what they move it
+  /// by.
   void check_stress_by_loads(const case_data::ResponseEntry& response) {
     std::vector<std::string> found;
     const case_data::CaseValues values(
@@ -255,16 +278,23 @@ class ShellChecks {
         input_.load_cases[static_cast<std::size_t>(response.load_case)];
     for (const case_data::LoadEntry& load : load_case.loads) {
       const bool pressed = load.kind == case_data::LoadKind::Pressure &&
+                           !is_rim(load.surfaces.front()) &&
                            values.follows_design(load.place.quantity);
-      if (pressed || (load.kind == case_data::LoadKind::Gravity &&
-                      values.follows_design(load.vector))) {
+      const bool heated = load.kind == case_data::LoadKind::Temperature &&
+                          (values.follows_design(load.place.quantity) ||
+                           values.follows_design(load.number));
+      if (pressed || heated ||
+          (load.kind == case_data::LoadKind::Gravity &&
+           values.follows_design(load.vector))) {
         problems_.add(
             response.line,
             fmt::format("responses.{} is of load case '{}', whose {} follows "
                         "the design, which {} of shells cannot yet; give it "
                         "a fixed number",
                         response.name, load_case.name,
-                        pressed ? "pressure" : "gravity",
+                        pressed  ? "pressure"
+                        : heated ? "temperature"
+                                 : "gravity",
                         case_data::row_of(response.kind).name));
       }
     }

@@ -304,6 +304,7 @@ std::vector<shell::NodeSupport> node_supports(
         .held = {support.fix_x, support.fix_y, support.fix_z, turn[0], turn[1],
                  turn[2]},
         .axes = support.axes};
+    held.value.head<3>() = loads::value_of(support.displacement);
     if (support.kind == loads::SupportKind::Symmetry) {
       held = in_plane(part.planes.at(support.surface));
     }
@@ -313,6 +314,19 @@ std::vector<shell::NodeSupport> node_supports(
     }
   }
   return supports;
+}
+
+double held_rate(const ShellPart& part, const loads::LoadCase& load_case,
+                 const loads::LoadCase& rates,
+                 const VectorX& adjoint_reactions) {
+  loads::LoadCase moved{.name = load_case.name};
+  moved.supports = load_case.supports;
+  for (std::size_t k = 0; k < moved.supports.size(); ++k) {
+    moved.supports[k].displacement = rates.supports[k].displacement;
+  }
+  const shell::ShellFreedom freedom(static_cast<int>(part.mesh.nodes.size()),
+                                    node_supports(part, moved));
+  return -adjoint_reactions.dot(freedom.held_values());
 }
 
 namespace {
@@ -349,10 +363,11 @@ void solve_case(const loads::LoadCase& load_case, ShellPart& part,
   own.actions = shell_actions(part, load_case);
   const shell::ShellSolution found = own.system->solve(own.actions.loads);
   own.displacement = found.displacement;
+  own.reaction = found.reaction;
   const VectorX forces =
       shell::nodal_forces(part.mesh, part.sections, own.actions.loads);
   // Reactions of what is free are the residual.
-  const double size = forces.norm();
+  const double size = std::max(forces.norm(), found.reaction.norm());
   const double left = own.system->freedom().restrict(found.reaction).norm();
   report.residual = std::max(report.residual, size > 0.0 ? left / size : left);
   if (solution.displacements.empty()) {

@@ -55,6 +55,12 @@ class ShellModel {
 std::vector<shell::NodeSupport> node_supports(const ShellPart& part,
                                               const loads::LoadCase& load_case);
 
+/// What enforced displacements that change at `rates` change a
+/// functional J by, K v - dJ/du the reactions to its adjoint v (6 per node).
+double held_rate(const ShellPart& part, const loads::LoadCase& load_case,
+                 const loads::LoadCase& rates,
+                 const VectorX& adjoint_reactions);
+
 /// Solves all load cases, those held alike with one factor. A shell that can
 /// move is a failure.
 equations::ElasticSolution solve_shell(const case_data::EvaluatedCase& inputs,

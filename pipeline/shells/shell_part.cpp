@@ -38,68 +38,106 @@ void add_pressure(const ShellPart& part, const loads::SurfacePressure& load,
   }
 }
 
-void add_rim_force(const ShellPart& part, const RimForce& force,
-                   shell::ShellLoads& sum) {
-  const shell::Line& rim = rim_of(part, force.rim);
-  const double length = shell::line_length(part.mesh, rim);
-  for (const std::array<int, 3>& edge : rim) {
-    sum.edges.push_back({.nodes = edge, .force = force.total / length});
-  }
-}
-
-/// On the facets of the rim's own film.
-void add_rim_tension(const ShellPart& part, const loads::RimTension& load,
-                     shell::ShellLoads& sum) {
+/// All that a rim's own film has: two where it goes on beyond.
+std::vector<shell::FacetEdge> edges_on(const ShellPart& part,
+                                       const std::string& rim) {
   std::set<int> middles;
-  for (const std::array<int, 3>& edge : rim_of(part, load.rim)) {
+  for (const std::array<int, 3>& edge : rim_of(part, rim)) {
     middles.insert(edge[2]);
   }
-  const int label = part.skin.label_of(film_of(load.rim));
+  std::vector<shell::FacetEdge> edges;
+  const int label = part.skin.label_of(film_of(rim));
   for (int f = 0; f < part.skin.face_count(); ++f) {
     for (int edge = 0; edge < 3 && part.skin.face_label[f] == label; ++edge) {
       if (middles.contains(part.mesh.facets[f][3 + edge])) {
-        sum.pulls.push_back({f, edge, load.tension});
+        edges.push_back({f, edge});
       }
     }
   }
+  return edges;
+}
+
+bool on_rims(const loads::Surfaces& surfaces) {
+  return is_rim(surfaces.front());
+}
+
+/// What rims carry together, in the load case's order.
+std::vector<shell::LineLoad> lines_of(const ShellPart& part,
+                                      const loads::LoadCase& load_case) {
+  std::vector<shell::LineLoad> lines;
+  for (const loads::SurfaceForce& force : load_case.forces) {
+    if (on_rims(force.surfaces)) {
+      lines.push_back({.edges = rim_edges(part, force.surfaces),
+                       .force = force.total,
+                       .name = force.surfaces.text()});
+    }
+  }
+  for (const loads::RemoteLoad& load : load_case.remote_loads) {
+    if (on_rims(load.surfaces)) {
+      lines.push_back({.edges = rim_edges(part, load.surfaces),
+                       .point = load.point,
+                       .force = load.force,
+                       .moment = load.moment,
+                       .name = load.surfaces.text()});
+    }
+  }
+  return lines;
 }
 
 /// Of what acts on films as it would on a solid's faces.
 loads::LoadCase on_films(const loads::LoadCase& load_case) {
   loads::LoadCase result{.name = load_case.name};
   for (loads::SurfaceForce force : load_case.forces) {
-    if (!is_rim(force.surfaces.front())) {
+    if (!on_rims(force.surfaces)) {
       force.surfaces = films_of(force.surfaces);
       result.forces.push_back(std::move(force));
     }
   }
   for (loads::SurfaceTraction traction : load_case.tractions) {
-    traction.surface = film_of(traction.surface);
-    result.tractions.push_back(std::move(traction));
+    if (!is_rim(traction.surface)) {
+      traction.surface = film_of(traction.surface);
+      result.tractions.push_back(std::move(traction));
+    }
   }
   for (loads::RemoteLoad remote : load_case.remote_loads) {
-    remote.surfaces = films_of(remote.surfaces);
-    result.remote_loads.push_back(std::move(remote));
+    if (!on_rims(remote.surfaces)) {
+      remote.surfaces = films_of(remote.surfaces);
+      result.remote_loads.push_back(std::move(remote));
+    }
   }
   return result;
 }
 
-ShellActions without_nodal(const ShellPart& part,
-                           const loads::LoadCase& load_case) {
-  ShellActions result;
-  result.on_films = on_films(load_case);
-  result.loads.gravity = load_case.gravity;
-  for (const loads::SurfacePressure& pressure : load_case.pressures) {
-    add_pressure(part, pressure, result.loads);
+/// All that is no force at nodes.
+shell::ShellLoads facet_loads_of(const ShellPart& part,
+                                 const loads::LoadCase& load_case) {
+  shell::ShellLoads result;
+  result.gravity = load_case.gravity;
+  if (const auto& heat = load_case.temperature) {
+    result.temperature = {.mean = heat->value - heat->reference};
   }
-  for (const loads::SurfaceForce& force : load_case.forces) {
-    if (is_rim(force.surfaces.front())) {
-      result.rims.push_back({force.surfaces.front(), force.total});
-      add_rim_force(part, result.rims.back(), result.loads);
+  for (const loads::SurfacePressure& load : load_case.pressures) {
+    if (!is_rim(load.surface)) {
+      add_pressure(part, load, result);
+      continue;
+    }
+    for (const auto& [facet, edge] : edges_on(part, load.surface)) {
+      result.tractions.push_back(
+          {.facet = facet, .edge = edge, .pressure = load.pressure});
     }
   }
-  for (const loads::RimTension& tension : load_case.rim_tensions) {
-    add_rim_tension(part, tension, result.loads);
+  for (const loads::SurfaceTraction& load : load_case.tractions) {
+    if (is_rim(load.surface)) {
+      for (const auto& [facet, edge] : rim_edges(part, load.surface)) {
+        result.tractions.push_back(
+            {.facet = facet, .edge = edge, .traction = load.traction});
+      }
+    }
+  }
+  for (const loads::RimTension& load : load_case.rim_tensions) {
+    for (const auto& [facet, edge] : edges_on(part, load.rim)) {
+      result.pulls.push_back({facet, edge, load.tension});
+    }
   }
   return result;
 }
@@ -134,13 +172,37 @@ const shell::Line& rim_of(const ShellPart& part, const std::string& rim) {
   return at->second;
 }
 
+std::vector<shell::FacetEdge> rim_edges(const ShellPart& part,
+                                        const loads::Surfaces& rims) {
+  std::vector<shell::FacetEdge> edges;
+  std::set<int> middles;
+  for (const std::string& rim : rims) {
+    for (const shell::FacetEdge& edge : edges_on(part, rim)) {
+      if (middles.insert(part.mesh.facets[edge.facet][3 + edge.edge]).second) {
+        edges.push_back(edge);
+      }
+    }
+  }
+  return edges;
+}
+
 ShellActions shell_actions(const ShellPart& part,
                            const loads::LoadCase& load_case) {
-  ShellActions result = without_nodal(part, load_case);
+  ShellActions result{.loads = facet_loads_of(part, load_case),
+                      .on_films = on_films(load_case),
+                      .lines = lines_of(part, load_case)};
   result.loads.spin = load_case.spin;
   if (acts_on_films(result.on_films)) {
     result.loads.nodal =
         shell::with_rotations(loads::nodal_forces(part.skin, result.on_films));
+  }
+  for (const shell::LineLoad& line : result.lines) {
+    const VectorX forces = shell::line_forces(part.mesh, line);
+    if (result.loads.nodal.size() == 0) {
+      result.loads.nodal = forces;
+    } else {
+      result.loads.nodal += forces;
+    }
   }
   return result;
 }
@@ -155,17 +217,8 @@ shell::ShellGradient work_gradient(const ShellPart& part, std::size_t load_case,
                                         shell::displacements_of(v),
                                         gradient.by_nodes);
   }
-  // The force per length of a rim falls as the rim grows.
-  for (const RimForce& force : actions.rims) {
-    const shell::Line& rim = rim_of(part, force.rim);
-    const double length = shell::line_length(part.mesh, rim);
-    if (!force.total.isZero(0.0)) {
-      const double mean =
-          shell::mean_displacement(part.mesh, rim, force.total, v).value;
-      shell::add_length_gradient(part.mesh, rim,
-                                 -force.total.norm() * mean / length,
-                                 gradient.by_nodes);
-    }
+  for (const shell::LineLoad& line : actions.lines) {
+    shell::line_gradient(part.mesh, line, v, &gradient);
   }
   return gradient;
 }
@@ -173,12 +226,21 @@ shell::ShellGradient work_gradient(const ShellPart& part, std::size_t load_case,
 double work_rate(const ShellPart& part, const loads::LoadCase& load_case,
                  const loads::LoadCase& rates, const VectorX& v) {
   double rate = v.dot(shell::nodal_forces(part.mesh, part.sections,
-                                          without_nodal(part, rates).loads));
+                                          facet_loads_of(part, rates)));
   const loads::LoadCase films = on_films(load_case);
   if (acts_on_films(films)) {
     rate += loads::load_rate(
         loads::load_gradient(part.skin, {}, films, shell::displacements_of(v)),
         on_films(rates));
+  }
+  const std::vector<shell::LineLoad> lines = lines_of(part, load_case);
+  const std::vector<shell::LineLoad> line_rates = lines_of(part, rates);
+  for (std::size_t k = 0; k < lines.size(); ++k) {
+    const shell::LineGradient by =
+        shell::line_gradient(part.mesh, lines[k], v, nullptr);
+    const shell::LineLoad& rate_of = line_rates[k];
+    rate += by.by_force.dot(rate_of.force) + by.by_moment.dot(rate_of.moment) +
+            by.by_point.dot(rate_of.point.value_or(Vec3::Zero()));
   }
   return rate;
 }

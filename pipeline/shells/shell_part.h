@@ -12,26 +12,22 @@
 #include "fea/shell/shell_lines.h"
 #include "fea/shell/shell_stress.h"
 #include "fea/shell/shell_system.h"
+#include "fea/shell_actions/line_load.h"
 
 namespace meniscus::shells {
 
-/// A total force, spread evenly along a rim.
-struct RimForce {
-  std::string rim;
-  Vec3 total = Vec3::Zero();  // [force]
-};
-
 /// What acts in a load case, in the terms of the shell.
 struct ShellActions {
-  shell::ShellLoads loads;     // all of it
-  loads::LoadCase on_films;    // of that: as forces at nodes
-  std::vector<RimForce> rims;  // of that: edge loads
+  shell::ShellLoads loads;             // all of it
+  loads::LoadCase on_films;            // of that: as forces at nodes
+  std::vector<shell::LineLoad> lines;  // of that: on rims, the same
 };
 
 struct ShellCase {
   ShellActions actions;
   std::shared_ptr<const shell::ShellSystem> system;  // of cases held alike
   VectorX displacement;                              // 6 per node
+  VectorX reaction;                                  // the same: K u - f
   std::vector<shell::FacetStress> stress;  // means at nodes; once, at the end
 };
 
@@ -60,6 +56,11 @@ std::string film_of(const std::string& surface);
 
 /// Throws InvalidInput for a rim of no edge.
 const shell::Line& rim_of(const ShellPart& part, const std::string& rim);
+
+/// The edges of facets of their own films, each once: edges that films share
+/// stand for the first. Throws as rim_of().
+std::vector<shell::FacetEdge> rim_edges(const ShellPart& part,
+                                        const loads::Surfaces& rims);
 
 /// What the load case, or its rates, are on the part; its numbers are those
 /// that the case checks let pass. A pressure on FILM acts on the face that

@@ -14,6 +14,7 @@ namespace meniscus::shell_deck {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 /// Two facets that share the side from 1 to 2, held along x = 0.
 ShellDeck square() {
@@ -27,8 +28,8 @@ ShellDeck square() {
   deck.sections = {{"one", steel, 0.0}, {"two", steel, 0.5}};
   deck.sets = {{"plate/rim:root", {0, 2, 6}}};
   deck.steps = {{"pull", {{{0, 2, 6}, {true, true, true}}}}};
-  deck.steps[0].nodal_forces = VectorX::Zero(27);
-  deck.steps[0].nodal_forces[9] = 3.0;  // node 4 along x
+  deck.steps[0].nodal_forces = VectorX::Zero(54);
+  deck.steps[0].nodal_forces[18] = 3.0;  // node 4 along x
   return deck;
 }
 
@@ -61,6 +62,17 @@ TEST(ShellDeckTest, ForcesBesideTheWallHaveMoments) {
   }
   EXPECT_NEAR(force, 9.0, 1e-11);
   EXPECT_NEAR(moment, 2.25, 1e-11);
+}
+
+TEST(ShellDeckTest, MomentsActAtNodes) {
+  ShellDeck deck = square();
+  deck.steps[0].nodal_forces.setZero();
+  deck.steps[0].nodal_forces[18 + 4] = 7.0;  // node 4 about y
+  EXPECT_THAT(nastran_shell_bdf(deck), HasSubstr("MOMENT*"));
+  EXPECT_THAT(nastran_shell_bdf(deck), Not(HasSubstr("FORCE*")));
+  const std::string text = calculix_shell_deck(deck);
+  const std::size_t at = text.find("*CLOAD, OP=NEW\n") + 15;
+  EXPECT_THAT(text.substr(at, text.find("*DLOAD") - at), HasSubstr("7.0"));
 }
 
 TEST(ShellDeckTest, ZoffsIsALength) {

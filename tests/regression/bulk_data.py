@@ -5,8 +5,8 @@ import math
 import re
 
 # Cards that the decks of this program may have, and no others.
-KNOWN = {"PARAM", "GRDSET", "GRID", "CTETRA", "PSOLID", "MAT1", "SPC1", "LOAD",
-         "FORCE", "PLOAD4", "GRAV", "RFORCE", "TEMP", "TEMPD",
+KNOWN = {"PARAM", "GRDSET", "GRID", "CTETRA", "PSOLID", "MAT1", "SPC1", "SPC", "LOAD",
+         "FORCE", "MOMENT", "PLOAD4", "GRAV", "RFORCE", "TEMP", "TEMPD",
          "SPOINT", "CELAS2", "MPC", "MAT9", "CORD2R", "CTRIA6", "PSHELL"}
 # CalculiX's order of the 21 constants of an anisotropic material: pairs of
 # stresses as Nastran counts them (11 22 33 12 23 31).
@@ -128,15 +128,19 @@ def read(text):
                                           *(real(x) if x else 0.0
                                             for x in [*f[4:6], ""][:2]))
         elif name == "SPC1":
-            deck.held[int(f[0])].append((f[1], [int(n) for n in f[2:] if n]))
+            deck.held[int(f[0])].append((f[1], [int(n) for n in f[2:] if n],
+                                         0.0))
+        elif name == "SPC":
+            deck.held[int(f[0])].append((f[2], [int(f[1])], real(f[3])))
         elif name == "LOAD":
             if any(real(x) != 1.0 for x in [f[1], *f[2::2]] if x):
                 raise ValueError("a factor")
             deck.loads[int(f[0])] = [int(x) for x in f[3::2] if x]
-        elif name == "FORCE":
+        elif name in ("FORCE", "MOMENT"):
             scale = real(f[3])
             deck.forces[int(f[0])].append(
-                (int(f[1]), [scale * real(x) for x in f[4:7]]))
+                (int(f[1]), 1 if name == "FORCE" else 4,
+                 [scale * real(x) for x in f[4:7]]))
         elif name == "PLOAD4":
             on, off = (*f, "", "", "", "")[6:8]  # of shells there are none
             deck.pressures[int(f[0])].append(
@@ -178,8 +182,8 @@ def calculix_deck(deck, subcase):
         out += ["*INITIAL CONDITIONS, TYPE=TEMPERATURE", "NALL, 0."]
     out += ["*STEP", "*STATIC", "*BOUNDARY"]
     out += [f"{n}, 2, 3" for n in deck.scalars]
-    for components, nodes in deck.held[case["SPC"]]:
-        out += [f"{n}, {c}, {c}" for n in nodes
+    for components, nodes, value in deck.held[case["SPC"]]:
+        out += [f"{n}, {c}, {c}, {value:.12e}" for n in nodes
                 for c in components.replace("0", "1")]
     for part in deck.loads.get(case.get("LOAD"), []):
         out += load_lines(deck, part)
@@ -203,9 +207,10 @@ def shell_lines(deck):
             t = t or [even] * 3
             t = [*t, *((t[k] + t[(k + 1) % 3]) / 2 for k in range(3))]
             nodal.update(zip(nodes, t))
-        young, poisson, density, _ = deck.materials[mid]
+        young, poisson, density, expansion = deck.materials[mid]
         out += [f"*MATERIAL, NAME=M{mid}", "*ELASTIC",
                 f"{young:.12e}, {poisson:.12e}", "*DENSITY", f"{density:.12e}",
+                "*EXPANSION", f"{expansion:.12e}",
                 f"*SHELL SECTION, ELSET=P{pid}, MATERIAL=M{mid}, "
                 "NODAL THICKNESS", "1."]
     if nodal:
@@ -243,8 +248,8 @@ def load_lines(deck, part):
     out = []
     if part in deck.forces:
         out.append("*CLOAD")
-        out += [f"{n}, {k + 1}, {force[k]:.12e}"
-                for n, force in deck.forces[part] for k in range(3)
+        out += [f"{n}, {first + k}, {force[k]:.12e}"
+                for n, first, force in deck.forces[part] for k in range(3)
                 if force[k] != 0.0]
     if part in deck.pressures:
         out.append("*DLOAD")

@@ -141,6 +141,40 @@ class ShellFiles(ProgramTest):
         for u in far:
             self.assertLess(abs(u / (5 * 100 / 1000) - 1), 2e-3)
 
+    # As a rim's moment about itself: at its nodes.
+    def test_decks_have_the_moments_of_rims(self):
+        text = shells_test.STRIP.replace("force = [0, 0, 0.1]",
+                                         "moment = [0, -2, 0]")
+        self.assertLess(self.differences(text, "7")[0], 2e-3)
+        file = self.run_case(text, "7", "bdf")["bdf"]
+        bulk = bulk_data.read(file.read_text())
+        ends = [x[0] for x in bulk.grids.values()]
+        theirs = self.by_calculix(bulk_data.calculix_deck(bulk, 1), "bulk",
+                                  len(ends))[0]
+        for u in [u[2] for x, u in zip(ends, theirs) if abs(x - 100) < 1e-9]:
+            self.assertLess(abs(u / (2 * 100 ** 2 / 2 / (1000 * 20 / 12))
+                                - 1), 5e-3)
+
+    def test_calculix_finds_what_is_moved_and_heated(self):
+        for text in (
+                shells_test.STRIP.replace(
+                    'fix_rotation = "xyz" }]',
+                    'fix_rotation = "xyz" }, { on = "plate/rim:end", fix = '
+                    '"xz", displacement = [0.1, 0, 2] }]').replace(
+                    "force = [0, 0, 0.1]", "force = [0, 0.1, 0]"),
+                shells_test.STRIP.replace(
+                    "poisson_ratio = 0",
+                    "poisson_ratio = 0\nthermal_expansion = 2e-5").replace(
+                    '{ on = "plate/rim:end", force = [0, 0, 0.1] }',
+                    "{ temperature = 70, reference = 20 }")):
+            self.assertLess(self.differences(text, "7")[0], 2e-3)
+            file = self.run_case(text, "7", "bdf", "msh", name="bulk")
+            bulk = bulk_data.read(file["bdf"].read_text())
+            theirs = self.by_calculix(bulk_data.calculix_deck(bulk, 1), "bulk",
+                                      len(bulk.grids))[0]
+            ours = nodal_field(file["msh"].read_text(), "displacement, tip ")
+            self.assertLess(root_mean(ours, theirs), 2e-3)
+
     # CalculiX presses the face that normals point away from, and holds the
     # middle of the wall: drawn so that both mean the same.
     def test_calculix_finds_those_of_films_drawn_at_random(self):

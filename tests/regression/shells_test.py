@@ -83,6 +83,8 @@ supports = [{ on = "skin/rim:low", fix = "xyz", fix_rotation = "xyz" }]
 loads = [
   { on = "skin/rim:high", force = [1000, 0, "ring * 10"] },
   { on = "skin/rim:high", rim_tension = "20 * inside" },
+  { on = "skin/rim:high", pressure = "3 * inside" },
+  { on = ["skin/rim:high", "skin/rim:low"], moment = ["1e5 * inside", 3e4, 2e4], at = [0, 0, "ring"] },
   { on = "skin", force = ["100 * inside", 0, 0] },
   { on = "skin", traction = [0, 0.01, "0.001 * x"] },
   { on = "skin/outside", pressure = 0.1 },
@@ -196,6 +198,9 @@ loads = [
   {{ on = "skin/rim:high", rim_tension = "{tension:.3f} + 0.1 * pull" }},
   {{ on = "skin/{face}", pressure = {pressure:.4f} }},
   {{ on = "skin", force = [0, "2 * pull", 1], moment = [0, 100, "pull"], at = ["lean", 0, 20] }},
+  {{ on = "skin/rim:high", force = [1, "pull", 0], moment = [300, 200, "9 * pull"], at = ["2 * lean", 0, 20] }},
+  {{ on = ["skin/rim:high", "skin/rim:low"], force = ["pull", 0, 9] }},
+  {{ on = "skin/rim:high", traction = ["0.1 * pull", 1, -0.5] }},
   {{ gravity = [0, -9810, 0] }},
 ]
 
@@ -353,6 +358,69 @@ PRESSED = {
 }
 
 
+# The tube with its rims moved and turned by the design, and heated.
+MOVED = TUBE[:TUBE.index("[load_cases.inner]")].replace(
+    "poisson_ratio = 0.3",
+    "poisson_ratio = 0.3\nthermal_expansion = 1.2e-5") + """
+[load_cases.moved]
+supports = [
+  { on = "skin/rim:low", fix = "xyz", displacement = [0, "0.01 * inside", 0], fix_rotation = "yz" },
+  { on = "skin/rim:high", fix = "x", displacement = ["0.02 * wall", 0, 0] },
+]
+loads = [
+  { on = "skin/rim:high", moment = [0, "1e6 * fill", 2e5], force = [0, 900, 0], at = [9, 0, "ring"] },
+  { on = "skin/inside", pressure = 0.5 },
+]
+
+[load_cases.hot]
+supports = [{ on = "skin/rim:low", fix = "xyz", fix_rotation = "xyz" }]
+loads = [
+  { temperature = "20 * inside", reference = "fill" },
+  { on = "skin/rim:high", traction = ["9 * inside", 2, 5] },
+]
+
+[load_cases.warm]
+supports = [{ on = "skin/rim:low", fix = "xyz", fix_rotation = "xyz" }]
+loads = [{ temperature = 50 }, { on = "skin/rim:high", moment = [0, 0, "1e6 * fill"] }]
+
+[responses.tip]
+kind = "mean_displacement"
+on = "skin/rim:high"
+direction = [0, 1, 0.3]
+load_case = "moved"
+
+[responses.work]
+kind = "compliance"
+load_case = "moved"
+
+[responses.energy]
+kind = "strain_energy"
+load_case = "moved"
+
+[responses.stress]
+kind = "von_mises_norm"
+power = 8
+load_case = "moved"
+
+[responses.grown]
+kind = "mean_displacement"
+on = "skin/rim:high"
+direction = [0.2, 0, 1]
+load_case = "hot"
+
+[responses.heat]
+kind = "compliance"
+load_case = "hot"
+
+[responses.hot_stress]
+kind = "von_mises_norm"
+power = 8
+load_case = "warm"
+
+[analysis]
+buckling = 0
+"""
+
 # Where mass is.
 MASSES = """
 [responses.middle]
@@ -488,6 +556,72 @@ class Shells(ProgramTest):
                                 - 1), 1e-6)
             self.assertLess(abs(responses["peak"] / abs(tension) - 1), 1e-5)
 
+    # A strip by the moment of its end about itself, and a tube clamped at
+    # one end as a beam, its plane sections plane.
+    def test_is_bent_by_the_moments_of_its_rims(self):
+        text = STRIP.replace("force = [0, 0, 0.1]", "moment = [0, -2, 0]")
+        result, _, _ = self.run_case(text, "--no-pictures")
+        dip = 2 * 100 ** 2 / (2 * 1000 * 20 / 12)
+        self.assertLess(abs(result["responses"]["dip"] / dip - 1), 1e-6)
+        text = THICK.format(
+            name="bent", supports=CLAMPED.format("low"),
+            load='{ on = "skin/rim:high", moment = [0, 1e7, 0] }')
+        text = text.replace("buckling = 2\nfrequencies = 4", "buckling = 0")
+        text = text.replace("poisson_ratio = 0.3", "poisson_ratio = 0") + """
+[responses.tip]
+kind = "mean_displacement"
+on = "skin/rim:high"
+direction = [1, 0, 0]
+"""
+        result, _, _ = self.run_case(text, "--no-pictures", "--set",
+                                     "design.wall.initial=1", name="tube")
+        inertia = math.pi * 50 ** 3
+        tip = 1e7 * LENGTH ** 2 / (2 * MODULUS * inertia)
+        # The film's facets bulge: r^3 is 0.6 % more.
+        self.assertLess(abs(result["responses"]["tip"] / tip - 1), 1e-2)
+
+    # As a beam whose end is lifted.
+    def test_is_moved_by_its_supports(self):
+        text = STRIP.replace(
+            'fix_rotation = "xyz" }]', 'fix_rotation = "xyz" }, { on = '
+            '"plate/rim:end", fix = "z", displacement = [0, 0, 2] }]').replace(
+            'loads = [{ on = "plate/rim:end", force = [0, 0, 0.1] }]\n',
+            "") + """
+[responses.energy]
+kind = "strain_energy"
+
+[responses.work]
+kind = "compliance"
+"""
+        result, _, _ = self.run_case(text, "--no-pictures")
+        found = result["responses"]
+        lifted = 3 * 1000 * 20 / 12 * 2 ** 2 / 2 / 100 ** 3
+        self.assertLess(abs(found["dip"] / 2 - 1), 1e-6)
+        self.assertLess(abs(found["energy"] / lifted - 1), 2e-3)
+        self.assertEqual(found["work"], 0)
+
+    # Free, and held at both ends.
+    def test_grows_by_its_temperature(self):
+        text = STRIP.replace(
+            "poisson_ratio = 0",
+            "poisson_ratio = 0\nthermal_expansion = 2e-5").replace(
+            '{ on = "plate/rim:end", force = [0, 0, 0.1] }',
+            "{ temperature = 70, reference = 20 }").replace(
+            "direction = [0, 0, 1]", "direction = [1, 0, 0]")
+        result, _, _ = self.run_case(text, "--no-pictures")
+        found = result["responses"]
+        self.assertLess(abs(found["dip"] / (2e-5 * 50 * 100) - 1), 1e-9)
+        text = text.replace('fix_rotation = "xyz" }]', 'fix_rotation = "xyz" '
+                            '}, { on = "plate/rim:end", fix = "x" }]')
+        text = text.replace('fix = "xyz", fix_rotation', 'fix = "xz", '
+                            "fix_rotation").replace(
+            '"plate/rim:end", fix = "x" }',
+            '"plate/rim:end", fix = "x" }, '
+            '{ on = "plate", at = [0, 0, 0], fix = "y" }')
+        result, _, _ = self.run_case(text, "--no-pictures", name="held")
+        self.assertLess(abs(result["responses"]["peak"] / (1000 * 2e-5 * 50)
+                            - 1), 1e-6)
+
     # The same pull all around leaves a plate of any outline one stress.
     def test_is_stressed_alike_by_the_same_pull_all_around(self):
         roll = random.Random(2)
@@ -514,6 +648,10 @@ class Shells(ProgramTest):
             text = TUBE.replace('material = "steel"\n',
                                 f'material = "steel"\nside = "{side}"\n', 1)
             self.expect(self.call("check-gradient", self.case(text)), 0)
+
+    def test_has_exact_gradients_where_it_is_moved_and_heated(self):
+        self.expect(self.call("check-gradient", self.case(MOVED),
+                              "--set", "resolution.fea=16"), 0)
 
     def test_has_exact_gradients_of_films_drawn_at_random(self):
         for seed in range(4):
@@ -756,8 +894,6 @@ constraints = [{ response = "stable", min = 1.5 }]
              'supports = [{ on = "skin/rim:low", fix = "normal" }',
              "a support along normals"),
             ('fix = "xyz" }', 'stiffness = [1, 1, 1] }', "springs"),
-            ('fix = "xyz" }', 'fix = "xyz", displacement = [1, 0, 0] }',
-             "an enforced displacement"),
             ('force = [1000, 0, "ring * 10"]',
              'by = "rigid", force = [1000, 0, 0]', "a rigid or bearing load"),
             ('"skin/rim:high", rim_tension = "20 * inside"',
@@ -765,8 +901,15 @@ constraints = [{ response = "stable", min = 1.5 }]
              "a rim_tension on what is no rim"),
             ('fix = "xyz" }', 'at = ["ring", 0, 0], fix = "xyz" }',
              "a support at a point that follows the design"),
+            ("{ gravity = [0, 0, -9810] }", '{ temperature = "20 + z" }',
+             "a temperature of place"),
             ("{ gravity = [0, 0, -9810] }", "{ temperature = 20 }",
-             "a temperature"),
+             "which has a temperature; of shells take compliance"),
+            ('on = "skin", force = ["100 * inside", 0, 0]',
+             'on = ["skin", "skin/rim:low"], force = [1, 0, 0]',
+             "on rims and films together"),
+            ('on = "skin", traction', 'on = "skin/rim:low", traction',
+             "a traction of place on a rim"),
             ("pressure = 0.1", 'pressure = "0.1 + z"', "a pressure of place"),
             ("spin = 100", 'spin = "inside"', "a spin that follows the design"),
             ("{ gravity = [0, 0, -9810] }",

@@ -66,6 +66,7 @@ ShellLoads all_loads(const MappedShell& shell) {
     loads.edges.push_back({edge, {1.0, -2.0, 0.5}, {0.2, 0.1, -0.3}});
   }
   loads.pulls = {{1, 0, 2.0}, {2, 1, -3.0}, {2, 2, 1.0}};
+  loads.tractions = {{0, 1, {0.4, -1.0, 2.0}, 1.5}, {3, 2, {1.0, 0.2, -0.6}}};
   loads.gravity = {0.5, 3.0, -9.0};
   loads.spin = loads::Spin{{0.2, -0.1, 0.3}, {1.0, 2.0, 3.0}, 1.7};
   loads.temperature = WallTemperature{.mean = 30.0, .across = 12.0};
@@ -122,7 +123,8 @@ TEST(ShellGradient, OfResidualsMeetsDifferences) {
   }
   {
     SCOPED_TRACE("edges");
-    expect_residual({.pulls = all.pulls, .edges = all.edges});
+    expect_residual(
+        {.pulls = all.pulls, .tractions = all.tractions, .edges = all.edges});
   }
   {
     SCOPED_TRACE("weight and spin");

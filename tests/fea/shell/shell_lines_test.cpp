@@ -100,12 +100,6 @@ TEST(ShellLines, DerivativesMeetDifferences) {
   derivatives::expect_derivative(check, [&](double h) {
     return mean_displacement(moved(h), line, d, u).value;
   });
-  Points by_length(shell.mesh.nodes.size(), Vec3::Zero());
-  add_length_gradient(shell.mesh, line, 3.0, by_length);
-  check.exact = 0.01 * flat(by_length).dot(flat(move));
-  check.scale = 0.01 * flat(by_length).cwiseProduct(flat(move)).lpNorm<1>();
-  derivatives::expect_derivative(
-      check, [&](double h) { return 3.0 * line_length(moved(h), line); });
   const VectorX more = waves(shell.mesh, 1.1);
   check.exact = here.by_displacement.dot(more);
   check.scale = here.by_displacement.cwiseProduct(more).lpNorm<1>();

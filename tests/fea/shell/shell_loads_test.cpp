@@ -95,6 +95,36 @@ TEST(ShellLoads, AForceAtAnEdgeBendsAStripAsABeam) {
   }
 }
 
+/// On a wall that lies beside its surface: pulled, not bent.
+TEST(ShellLoads, TractionOnAnEndActsInTheMiddleOfTheWall) {
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    Strip strip(seed);
+    strip.sections[0].offset = 0.1 * (static_cast<double>(seed) + 1.0);
+    ShellLoads loads;
+    for (std::size_t f = 0; f < strip.shell.mesh.facets.size(); ++f) {
+      for (int e = 0; e < 3; ++e) {
+        if (strip.shell.place[strip.shell.mesh.facets[f][3 + e]][0] >
+            1.0 - 1e-9) {
+          loads.tractions.push_back({.facet = static_cast<int>(f),
+                                     .edge = e,
+                                     .traction = Vec3(5.0, 0.0, 0.0),
+                                     .pressure = 2.0});
+        }
+      }
+    }
+    EXPECT_EQ(loads.tractions.size(), 2U);
+    const VectorX u = strip.solve(loads);
+    const Six tip = strip.tip_motion(u);
+    EXPECT_NEAR(tip[0] / (3.0 * strip.L / strip.E), 1.0, kExact);
+    EXPECT_LT(std::abs(tip[2]) + std::abs(tip[4]), kExact);
+    for (const FacetStress& facet :
+         shell_stress(strip.shell.mesh, strip.sections, loads, u)) {
+      EXPECT_NEAR(facet[0].negative[0], 3.0, 1e-7);
+      EXPECT_NEAR(facet[0].positive[0], 3.0, 1e-7);
+    }
+  }
+}
+
 TEST(ShellLoads, FreeExpansionHasNoStress) {
   constexpr double kAlpha = 1e-5;
   Strip strip(3, 0.3);
@@ -288,6 +318,9 @@ TEST(ShellLoads, RefusesWhatIsNotThere) {
   EXPECT_THROW(strip.solve(loads), InvalidInput);
   loads = {};
   loads.pulls = {{0, 3, 1.0}};
+  EXPECT_THROW(strip.solve(loads), InvalidInput);
+  loads = {};
+  loads.tractions = {{.facet = -1}};
   EXPECT_THROW(strip.solve(loads), InvalidInput);
   loads = {};
   loads.edges = {{{0, 1, -1}}};

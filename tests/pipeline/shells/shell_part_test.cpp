@@ -16,7 +16,8 @@ namespace {
 using shell_shapes::MappedShell;
 using shells::ShellPart;
 
-/// A saddle over the unit square, film "skin" with the rim "foot" at t = 0.
+/// A saddle over the unit square, film "skin" with the rims "foot" at t = 0 and
+/// "side" at s = 0.
 MappedShell saddle() {
   return shell_shapes::mapped_shell(
       [](double s, double t) -> Vec3 {
@@ -42,6 +43,8 @@ void make_part(const MappedShell& drawn, ShellPart& part) {
   }
   part.rims["skin/rim:foot"] =
       drawn.edges([](double, double t) { return t < 1e-9; });
+  part.rims["skin/rim:side"] =
+      drawn.edges([](double s, double) { return s < 1e-9; });
 }
 
 /// All that a case may ask for, times `size`.
@@ -50,13 +53,20 @@ loads::LoadCase loads_of(double size) {
   load.pressures = {{.surface = "skin", .pressure = 3.0 * size},
                     {.surface = "skin/back", .pressure = -1.0 * size}};
   load.forces = {{"skin/rim:foot", size * Vec3(1.0, -2.0, 0.5)},
-                 {"skin", size * Vec3(0.3, 0.2, -1.0)}};
+                 {"skin", size * Vec3(0.3, 0.2, -1.0)},
+                 {{"skin/rim:foot", "skin/rim:side"}, size * Vec3(2, 1, -3)}};
+  load.pressures.push_back({.surface = "skin/rim:side", .pressure = size});
   load.tractions = {
-      {.surface = "skin/back", .traction = size * Vec3(0.1, 0.4, -0.3)}};
+      {.surface = "skin/back", .traction = size * Vec3(0.1, 0.4, -0.3)},
+      {.surface = "skin/rim:foot", .traction = size * Vec3(4.0, -5.0, 3.0)}};
   load.remote_loads = {{.surfaces = "skin",
                         .point = Vec3(1.0, 0.5, 2.0),
                         .force = size * Vec3(0.2, -0.1, 0.4),
-                        .moment = size * Vec3(-0.3, 0.2, 0.1)}};
+                        .moment = size * Vec3(-0.3, 0.2, 0.1)},
+                       {.surfaces = {"skin/rim:side", "skin/rim:foot"},
+                        .point = Vec3(0.5, 1.5, -1.0),
+                        .force = size * Vec3(-0.4, 0.7, 0.1),
+                        .moment = size * Vec3(0.6, -0.5, 0.9)}};
   load.gravity = size * Vec3(0.0, 0.5, -9.0);
   return load;
 }
@@ -83,8 +93,9 @@ TEST(ShellPart, LoadsWorkOnTranslationsAsTheirSums) {
   load.pressures.clear();
   load.gravity.setZero();
   load.tractions.clear();
-  const Vec3 total =
-      load.forces[0].total + load.forces[1].total + load.remote_loads[0].force;
+  const Vec3 total = load.forces[0].total + load.forces[1].total +
+                     load.forces[2].total + load.remote_loads[0].force +
+                     load.remote_loads[1].force;
   VectorX v =
       VectorX::Zero(static_cast<Eigen::Index>(6 * part.mesh.nodes.size()));
   for (Eigen::Index i = 0; i < v.size(); i += 6) {
@@ -162,7 +173,9 @@ TEST(ShellPart, WorkGrowsByTheLoadsRates) {
   make_part(drawn, part);
   const VectorX v = waves(part.mesh.nodes.size(), 0.3);
   loads::LoadCase rates = loads_of(1.0);
-  rates.remote_loads[0].point.setZero();  // it does not move
+  for (loads::RemoteLoad& remote : rates.remote_loads) {
+    remote.point.setZero();  // it does not move
+  }
   const double exact =
       work(part, loads_of(3.0), v) - work(part, loads_of(2.0), v);
   EXPECT_NEAR(shells::work_rate(part, loads_of(2.5), rates, v), exact,
