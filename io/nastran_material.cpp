@@ -103,4 +103,19 @@ std::string isotropic_card(const DeckMaterial& material, int id) {
        unless_zero(material.thermal_expansion[0])});
 }
 
+std::string ply_card(const DeckMaterial& material, int id) {
+  if (!material.orthotropic) {
+    return isotropic_card(material, id);
+  }
+  const DeckOrthotropic& m = *material.orthotropic;
+  return long_card(
+      "MAT8",
+      {std::to_string(id), nastran_real(m.youngs_moduli[0]),
+       nastran_real(m.youngs_moduli[1]), nastran_real(m.poisson_ratios[0]),
+       nastran_real(m.shear_moduli[0]), nastran_real(m.shear_moduli[1]),
+       nastran_real(m.shear_moduli[2]), unless_zero(material.density),
+       unless_zero(material.thermal_expansion[0]),
+       unless_zero(material.thermal_expansion[1])});
+}
+
 }  // namespace meniscus::io

@@ -13,4 +13,7 @@ std::string nastran_material(const DeckMaterial& material, int id);
 /// The card MAT1 of an isotropic material.
 std::string isotropic_card(const DeckMaterial& material, int id);
 
+/// MAT1, or MAT8 of an orthotropic material in the plane of axes 1 and 2.
+std::string ply_card(const DeckMaterial& material, int id);
+
 }  // namespace meniscus::io

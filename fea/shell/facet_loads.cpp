@@ -11,17 +11,6 @@ namespace meniscus::shell {
 
 namespace {
 
-/// Force per mass at a place.
-Vec3 acceleration(const ShellLoads& loads, const Vec3& x) {
-  Vec3 a = loads.gravity;
-  if (loads.spin) {
-    const Vec3 axis = loads.spin->axis.normalized();
-    const Vec3 arm = x - loads.spin->point;
-    a += loads.spin->rate * loads.spin->rate * (arm - axis.dot(arm) * axis);
-  }
-  return a;
-}
-
 /// Mass times acceleration; the latter is linear in the place.
 WholeVector mass_forces(const Facet& facet, const ShellLoads& loads) {
   const auto X = triples(facet);
@@ -102,7 +91,20 @@ WholeVector edge_forces(const Facet& facet, const FacetLoad& load) {
 }  // namespace
 
 bool has_mass_loads(const ShellLoads& loads) {
-  return loads.spin.has_value() || loads.gravity != Vec3::Zero();
+  return loads.spin || loads.mass_force || loads.gravity != Vec3::Zero();
+}
+
+Vec3 acceleration(const ShellLoads& loads, const Vec3& x) {
+  Vec3 a = loads.gravity;
+  if (loads.spin) {
+    const Vec3 axis = loads.spin->axis.normalized();
+    const Vec3 arm = x - loads.spin->point;
+    a += loads.spin->rate * loads.spin->rate * (arm - axis.dot(arm) * axis);
+  }
+  if (loads.mass_force) {
+    a += loads.mass_force->at_origin + loads.mass_force->slope * x;
+  }
+  return a;
 }
 
 bool FacetLoad::presses() const {

@@ -12,6 +12,9 @@ namespace meniscus::shell {
 /// Weight or spin.
 bool has_mass_loads(const ShellLoads& loads);
 
+/// Force per mass at a place, of both.
+Vec3 acceleration(const ShellLoads& loads, const Vec3& x);
+
 /// What acts along one edge of a facet.
 struct EdgeForces {
   double pull = 0.0;  // per length

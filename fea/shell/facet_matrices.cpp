@@ -155,8 +155,8 @@ StrainLaw strain_law(const Facet& facet, const FacetFrame<double>& frame,
                    const auto plane = S.topRows<3>();
                    const auto across = S.bottomRows<2>();
                    H += weight * (plane.transpose() * ply.plane * plane);
-                   H += weight * facet.law->shear_correction *
-                        (across.transpose() * ply.across * across);
+                   H += weight *
+                        (across.transpose() * facet.law->across * across);
                  });
   StrainVector skew = StrainVector::Zero();
   skew[1] = 1.0;
@@ -256,13 +256,16 @@ FacetMatrix facet_mass(const Facet& facet, const FacetRule& rule) {
   return M;
 }
 
+double WallState::heat(double at) const {
+  return temperature + temperature_across * at;
+}
+
 double WallState::stress(double at) const {
   return (0.5 - at) * stress_negative + (0.5 + at) * stress_positive;
 }
 
 Vec3 WallState::free_strain(const PlyLaw& ply, double at) const {
-  return (temperature + temperature_across * at) * ply.expansion +
-         stress(at) * ply.squeeze;
+  return heat(at) * ply.expansion + stress(at) * ply.squeeze;
 }
 
 WholeVector holding_forces(const Facet& facet, const WallState& state,

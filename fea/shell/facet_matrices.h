@@ -60,7 +60,8 @@ struct WallState {
   double stress_negative = 0.0;     // along the normal, at the faces
   double stress_positive = 0.0;     // [pressure]
 
-  double stress(double at) const;  // `at` as LayerPoint has it
+  double heat(double at) const;  // `at` as LayerPoint has it
+  double stress(double at) const;
   Vec3 free_strain(const PlyLaw& ply, double at) const;
 };
 

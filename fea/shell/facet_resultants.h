@@ -58,8 +58,8 @@ FacetResultants<T> facet_resultants(const StressedPoint<T>& at) {
              ply.plane(i, 2) * (e.plane[2] - free[2]);
     }
     for (int i = 0; i < 2; ++i) {
-      across[i] = law.shear_correction * (ply.across(i, 0) * e.across[0] +
-                                          ply.across(i, 1) * e.across[1]);
+      across[i] =
+          law.across(i, 0) * e.across[0] + law.across(i, 1) * e.across[1];
     }
     for (int a = 0; a < 2; ++a) {
       sum.shear[a] = sum.shear[a] +

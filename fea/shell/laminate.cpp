@@ -1,10 +1,13 @@
 #include "fea/shell/laminate.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include <Eigen/LU>
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/math/dual.h"
 #include "core/math/gauss_rule.h"
 
 namespace meniscus::shell {
@@ -43,6 +46,42 @@ PlyLaw own_law(const element::Material& m) {
   return law;
 }
 
+/// Of the law in the material's own axes.
+PlyLaw by_modulus(const element::Material& m, const PlyLaw& own) {
+  const double share = m.orthotropic ? 1.0 : 1.0 / m.youngs_modulus;
+  return {.plane = share * own.plane,
+          .across = share * own.across,
+          .squeeze = -share * own.squeeze};
+}
+
+PlyLaw by_angle(const PlyLaw& own, double angle) {
+  const double c = std::cos(angle);
+  const double s = std::sin(angle);
+  Mat3 T;
+  T << c * c, s * s, c * s,  //
+      s * s, c * c, -c * s,  //
+      -2.0 * c * s, 2.0 * c * s, c * c - s * s;
+  const double c2 = c * c - s * s;
+  const double s2 = 2.0 * c * s;
+  Mat3 dT;
+  dT << -s2, s2, c2,  //
+      s2, -s2, -c2,   //
+      -2.0 * c2, 2.0 * c2, -2.0 * s2;
+  Eigen::Matrix2d R;
+  R << c, s, -s, c;
+  Eigen::Matrix2d dR;
+  dR << -s, c, -c, -s;
+  const Mat3 half = T.transpose() * own.plane * dT;
+  const Eigen::Matrix2d shear = R.transpose() * own.across * dR;
+  const auto strain = [&](const Vec3& e) -> Vec3 {
+    return (e[0] - e[1]) * Vec3(-s2, s2, 2.0 * c2);
+  };
+  return {.plane = half + half.transpose(),
+          .across = shear + shear.transpose(),
+          .expansion = strain(own.expansion),
+          .squeeze = strain(own.squeeze)};
+}
+
 PlyLaw turned(const PlyLaw& law, double angle) {
   const double c = std::cos(angle);
   const double s = std::sin(angle);
@@ -65,16 +104,86 @@ PlyLaw turned(const PlyLaw& law, double angle) {
   return result;
 }
 
+/// The mean of a ply's stiffness along all directions, shear in proportion: it
+/// does not hang on the axes (Tsai and Hahn's U1).
+double mean_stiffness(const PlyLaw& ply) {
+  const Mat3& Q = ply.plane;
+  return (3.0 * (Q(0, 0) + Q(1, 1)) + 2.0 * Q(0, 1) + 4.0 * Q(2, 2)) / 8.0;
+}
+
+/// Integrals over each ply of the square of a unit shear force's stress, of
+/// plies of stiffness E in a wall of thickness 1.
+template <class T>
+std::vector<T> shear_squares(const LaminateLaw& law, const std::vector<T>& E) {
+  T whole(0.0);
+  T first(0.0);
+  for (std::size_t p = 0; p < E.size(); ++p) {
+    const double a = law.from[p];
+    const double b = law.to[p];
+    whole = whole + (b - a) * E[p];
+    first = first + 0.5 * (b * b - a * a) * E[p];
+  }
+  const T neutral = first / whole;
+  T bending(0.0);
+  T below(0.0);  // integral of E (z - neutral) up to the ply
+  std::vector<T> squares;
+  for (std::size_t p = 0; p < E.size(); ++p) {
+    const T a = law.from[p] - neutral;
+    const T b = law.to[p] - neutral;
+    bending = bending + E[p] * (b * b * b - a * a * a) / 3.0;
+    // below + E / 2 (z^2 - a^2): a square of degree four, by three points.
+    T sum(0.0);
+    for (const GaussPoint& g : gauss_rule(3)) {
+      const T z = a + g.at * (b - a);
+      const T stress = below + 0.5 * E[p] * (z * z - a * a);
+      sum = sum + g.weight * stress * stress;
+    }
+    squares.push_back((b - a) * sum);
+    below = below + 0.5 * E[p] * (b * b - a * a);
+  }
+  for (T& square : squares) {
+    square = square / (bending * bending);
+  }
+  return squares;
+}
+
+/// Sets `across` and its rates.
+void add_shear(LaminateLaw& law) {
+  const std::size_t plies = law.plies.size();
+  std::vector<double> E;
+  std::vector<Eigen::Matrix2d> soft;
+  for (const PlyLaw& ply : law.plies) {
+    E.push_back(mean_stiffness(ply));
+    soft.push_back(ply.across.inverse());
+  }
+  const std::vector<double> squares = shear_squares(law, E);
+  Eigen::Matrix2d compliance = Eigen::Matrix2d::Zero();
+  for (std::size_t p = 0; p < plies; ++p) {
+    compliance += squares[p] * soft[p];
+  }
+  law.across = compliance.inverse();
+  for (std::size_t p = 0; p < plies; ++p) {
+    std::vector<Dual1> moved(E.begin(), E.end());
+    moved[p] = Dual1::variable(E[p], 0);
+    const std::vector<Dual1> by_E = shear_squares(law, moved);
+    Eigen::Matrix2d of_squares = Eigen::Matrix2d::Zero();
+    for (std::size_t q = 0; q < plies; ++q) {
+      of_squares += by_E[q].gradient[0] * soft[q];
+    }
+    for (LawRate* rate : {&law.rates[p].by_modulus, &law.rates[p].by_angle}) {
+      const Eigen::Matrix2d by =
+          mean_stiffness(rate->ply) * of_squares -
+          squares[p] * soft[p] * rate->ply.across * soft[p];
+      rate->across = -law.across * by * law.across;
+    }
+  }
+}
+
 }  // namespace
 
 LaminateLaw laminate_law(const Laminate& laminate) {
   if (laminate.plies.empty()) {
     throw InvalidInput("a laminate has no ply; give it one");
-  }
-  if (!(laminate.shear_correction > 0.0)) {
-    throw InvalidInput(fmt::format(
-        "a laminate's shear correction is {}, and must be above 0 (5/6)",
-        laminate.shear_correction));
   }
   double whole = 0.0;
   for (const Ply& ply : laminate.plies) {
@@ -88,12 +197,14 @@ LaminateLaw laminate_law(const Laminate& laminate) {
     whole += ply.share;
   }
   LaminateLaw law;
-  law.shear_correction = laminate.shear_correction;
   double from = -0.5;
   for (const Ply& ply : laminate.plies) {
     const double share = ply.share / whole;
     const int number = static_cast<int>(law.plies.size());
-    law.plies.push_back(turned(own_law(ply.material), ply.angle));
+    const PlyLaw own = own_law(ply.material);
+    law.plies.push_back(turned(own, ply.angle));
+    law.rates.push_back({{turned(by_modulus(ply.material, own), ply.angle)},
+                         {by_angle(own, ply.angle)}});
     law.from.push_back(from);
     law.to.push_back(from + share);
     for (const GaussPoint& g : gauss_rule(2)) {
@@ -103,7 +214,41 @@ LaminateLaw laminate_law(const Laminate& laminate) {
     law.mean_shear += share * law.plies.back().plane(2, 2);
     from += share;
   }
+  add_shear(law);
   return law;
+}
+
+LawGradient::LawGradient(const LaminateLaw& of) : law(of) {
+  by.resize(law.plies.size());
+}
+
+std::vector<PlyGradient> LawGradient::by_ply() const {
+  std::vector<PlyGradient> result;
+  for (std::size_t p = 0; p < by.size(); ++p) {
+    const auto along = [&](const LawRate& rate) {
+      return by[p].plane.cwiseProduct(rate.ply.plane).sum() +
+             by[p].expansion.dot(rate.ply.expansion) +
+             by[p].squeeze.dot(rate.ply.squeeze) +
+             by_across.cwiseProduct(rate.across).sum() +
+             by_mean_shear * (law.to[p] - law.from[p]) * rate.ply.plane(2, 2);
+    };
+    result.push_back({.modulus = along(law.rates[p].by_modulus),
+                      .density = by[p].density,
+                      .angle = along(law.rates[p].by_angle)});
+  }
+  return result;
+}
+
+void add_plies(double factor, const PlyGradients& more, PlyGradients& sum) {
+  sum.resize(std::max(sum.size(), more.size()));
+  for (std::size_t s = 0; s < more.size(); ++s) {
+    sum[s].resize(std::max(sum[s].size(), more[s].size()));
+    for (std::size_t p = 0; p < more[s].size(); ++p) {
+      sum[s][p].modulus += factor * more[s][p].modulus;
+      sum[s][p].density += factor * more[s][p].density;
+      sum[s][p].angle += factor * more[s][p].angle;
+    }
+  }
 }
 
 LaminateStiffness laminate_stiffness(const LaminateLaw& law, double thickness) {
@@ -116,8 +261,8 @@ LaminateStiffness laminate_stiffness(const LaminateLaw& law, double thickness) {
     result.A += w * ply.plane;
     result.B += w * z * ply.plane;
     result.D += w * z * z * ply.plane;
-    result.S += w * law.shear_correction * ply.across;
   }
+  result.S = thickness * law.across;
   return result;
 }
 

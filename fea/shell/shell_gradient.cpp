@@ -1,6 +1,7 @@
 #include "fea/shell/shell_gradient.h"
 
 #include <array>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -79,9 +80,8 @@ Taped inner_work(const TapedPoint& at, const WallState& state,
                     Triple<Taped>{b.plane[0] - free[0], b.plane[1] - free[1],
                                   b.plane[2] - free[2]});
         for (int i = 0; i < 2; ++i) {
-          density = density + law.shear_correction * a.across[i] *
-                                  (ply.across(i, 0) * b.across[0] +
-                                   ply.across(i, 1) * b.across[1]);
+          density = density + a.across[i] * (law.across(i, 0) * b.across[0] +
+                                             law.across(i, 1) * b.across[1]);
         }
         sum = sum + weight * density;
       });
@@ -102,6 +102,13 @@ Triple<Taped> taped_acceleration(const ShellLoads& loads,
     const Triple<Taped> arm = {x[0] - o[0], x[1] - o[1], x[2] - o[2]};
     const Triple<Taped> out = plus(arm, -dot(arm, axis), axis);
     a = plus(a, loads.spin->rate * loads.spin->rate, out);
+  }
+  if (loads.mass_force) {
+    const MassForce& force = *loads.mass_force;
+    for (int i = 0; i < 3; ++i) {
+      a[i] = a[i] + force.at_origin[i] + force.slope(i, 0) * x[0] +
+             force.slope(i, 1) * x[1] + force.slope(i, 2) * x[2];
+    }
   }
   return a;
 }
@@ -187,12 +194,64 @@ struct FacetResidual {
   WholeField v, u;
 };
 
+/// By the law, at one point of which the area is `area`.
+void add_by_law(const FacetResidual& residual, const FacetPoint& p,
+                const std::array<Triple<double>, kNodes>& X, double area,
+                LawGradient& sum) {
+  const Facet& facet = residual.facet;
+  const FacetFrame<double> frame = facet_frame(X, p, facet.direction);
+  const auto axes = bubble_axes(X);
+  const Triple<double> of_v = bubble_turn(axes, residual.v.bubble);
+  const FacetStrain<double> v =
+      facet_strain(X, p, frame, residual.v.nodes, of_v);
+  const FacetStrain<double> u = facet_strain(
+      X, p, frame, residual.u.nodes, bubble_turn(axes, residual.u.bubble));
+  const WallState state = wall_state(residual.loads, residual.own);
+  const double t = thickness_at(facet, p);
+  const Vec3 n = as_vector(frame.axes[2]);
+  Vec3 x = Vec3::Zero();
+  Vec3 moved = Vec3::Zero();
+  Vec3 turned = p.shape[kNodes] * as_vector(of_v);
+  for (int i = 0; i < kNodes; ++i) {
+    x += p.shape[i] * facet.nodes[i];
+    moved += p.shape[i] * residual.v.nodes.col(i).head<3>();
+    turned += p.shape[i] * residual.v.nodes.col(i).tail<3>();
+  }
+  const bool heavy = has_mass_loads(residual.loads);
+  for (const LayerPoint& layer : facet.law->points) {
+    const double zeta = (layer.at + facet.offset) * t;
+    const Square<double> shift = shifter(frame.curvature, zeta);
+    const double weight = area * layer.weight * t * determinant(shift);
+    const LayerStrain<double> a = layer_strain(v, inverse(shift), zeta);
+    const LayerStrain<double> b = layer_strain(u, inverse(shift), zeta);
+    const PlyLaw& ply = facet.law->plies[layer.ply];
+    PlyLaw& by = sum.by[layer.ply];
+    const Vec3 elastic = as_vector(b.plane) - state.free_strain(ply, layer.at);
+    by.plane -= weight * as_vector(a.plane) * elastic.transpose();
+    sum.by_across -= weight * Eigen::Vector2d(a.across[0], a.across[1]) *
+                     Eigen::RowVector2d(b.across[0], b.across[1]);
+    const Vec3 held = weight * ply.plane.transpose() * as_vector(a.plane);
+    by.expansion += state.heat(layer.at) * held;
+    by.squeeze += state.stress(layer.at) * held;
+    if (heavy) {
+      by.density +=
+          weight * (moved + zeta * turned.cross(n))
+                       .dot(acceleration(residual.loads, x + zeta * n));
+    }
+  }
+  sum.by_mean_shear -= area * kDrilling * t *
+                       (v.stretch[0][1] - v.stretch[1][0]) *
+                       (u.stretch[0][1] - u.stretch[1][0]);
+}
+
 FacetGradient facet_gradient(const FacetResidual& residual, Tape& tape) {
   const Facet& facet = residual.facet;
   const TapedFacet taped(facet, tape);
   const Triple<Taped> of_v = taped.bubble(residual.v.bubble);
   const Triple<Taped> of_u = taped.bubble(residual.u.bubble);
   const WallState state = wall_state(residual.loads, residual.own);
+  const auto X = triples(facet);
+  LawGradient by_law(*facet.law);
   Taped sum = edge_work(facet, taped, residual.own, residual.v);
   for (const FacetPoint& p : facet_rule()) {
     const TapedPoint at = taped_point(facet, taped, p);
@@ -203,24 +262,28 @@ FacetGradient facet_gradient(const FacetResidual& residual, Tape& tape) {
     const Taped outer =
         outer_work(at, residual.loads, residual.own, residual.v, of_v);
     sum = sum + p.weight * frame.area * (outer - inner);
+    add_by_law(residual, p, X, p.weight * frame.area.value, by_law);
   }
-  return {sum.value, taped.transpose(sum)};
+  return {sum.value, taped.transpose(sum), by_law.by_ply()};
 }
 
 FacetGradient facet_mass_gradient(const Facet& facet, Tape& tape) {
   const TapedFacet taped(facet, tape);
   Taped mass(0.0);
+  std::vector<PlyGradient> by_ply(facet.law->plies.size());
   for (const FacetPoint& p : facet_rule()) {
     const TapedPoint at = taped_point(facet, taped, p);
+    const Taped area = p.weight * at.wall.frame.area;
     Taped density(0.0);
     for_each_taped_layer(
         at, [&](const Taped&, const Taped& weight, const Square<Taped>&,
                 const LayerPoint& layer) {
           density = density + facet.law->plies[layer.ply].density * weight;
+          by_ply[layer.ply].density += area.value * weight.value;
         });
-    mass = mass + p.weight * at.wall.frame.area * density;
+    mass = mass + area * density;
   }
-  return {mass.value, taped.transpose(mass)};
+  return {mass.value, taped.transpose(mass), std::move(by_ply)};
 }
 
 void add_edge_gradient(const ShellMesh& mesh, const EdgeLoad& load,

@@ -13,6 +13,7 @@ struct ShellGradient {
   double value = 0.0;              // v . (f - K u)
   Points by_nodes;                 // one per node [of value / length]
   std::vector<Vec3> by_thickness;  // at each facet's corners [the same]
+  PlyGradients by_ply;
 };
 
 /// v . (f(x, t) - K(x, t) u) and its derivatives, f the nodal_forces() of the

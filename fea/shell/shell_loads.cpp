@@ -96,4 +96,24 @@ VectorX nodal_forces(const ShellMesh& mesh,
   return f;
 }
 
+MassForce mass_force(const loads::Spin& spin) {
+  if (spin.axis.isZero(0.0)) {
+    throw InvalidInput("a spin has no axis; give it one of any length but 0");
+  }
+  const Vec3 n = spin.axis.normalized();
+  const Mat3 slope =
+      spin.rate * spin.rate * (Mat3::Identity() - n * n.transpose());
+  return {-slope * spin.point, slope};
+}
+
+MassForce mass_force_rate(const loads::Spin& spin, const loads::Spin& rates) {
+  const MassForce here = mass_force(spin);
+  const Vec3 n = spin.axis.normalized();
+  const Vec3 dn = (rates.axis - n.dot(rates.axis) * n) / spin.axis.norm();
+  const Mat3 slope =
+      2.0 * spin.rate * rates.rate * (Mat3::Identity() - n * n.transpose()) -
+      spin.rate * spin.rate * (dn * n.transpose() + n * dn.transpose());
+  return {-slope * spin.point - here.slope * rates.point, slope};
+}
+
 }  // namespace meniscus::shell

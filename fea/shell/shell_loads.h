@@ -53,6 +53,17 @@ struct WallTemperature {
   double across = 0.0;  // at the positive face less that at the negative one
 };
 
+/// Force per mass at x: at_origin + slope x.
+struct MassForce {
+  Vec3 at_origin = Vec3::Zero();  // [length/time^2]
+  Mat3 slope = Mat3::Zero();      // [1/time^2]
+};
+/// Of the place's distance from the axis. Throws InvalidInput for a spin
+/// without an axis.
+MassForce mass_force(const loads::Spin& spin);
+/// What it changes by when the spin's numbers do at `rates`.
+MassForce mass_force_rate(const loads::Spin& spin, const loads::Spin& rates);
+
 struct ShellLoads {
   std::vector<FacetPressure> pressures;
   std::vector<EdgePull> pulls;
@@ -60,6 +71,7 @@ struct ShellLoads {
   std::vector<EdgeLoad> edges;
   Vec3 gravity = Vec3::Zero();  // force per mass [length/time^2]
   std::optional<loads::Spin> spin;
+  std::optional<MassForce> mass_force;
   std::optional<WallTemperature> temperature;
   VectorX nodal;  // forces and moments, 6 per node; empty: none
 };

@@ -1,5 +1,7 @@
 #include "fea/shell/shell_moments.h"
 
+#include <utility>
+
 #include "core/parallel_for.h"
 #include "fea/shell/taped_facet.h"
 
@@ -7,7 +9,7 @@ namespace meniscus::shell {
 
 namespace {
 
-/// visit(density times weight, place) at all points of a facet's wall.
+/// visit(weight, ply, place) at all points of a facet's wall.
 template <class T, class ThicknessAt, class Visit>
 void for_each_mass(const Facet& facet, const std::array<Triple<T>, kNodes>& X,
                    const ThicknessAt& thickness_there, const Visit& visit) {
@@ -20,10 +22,9 @@ void for_each_mass(const Facet& facet, const std::array<Triple<T>, kNodes>& X,
     }
     for (const LayerPoint& layer : facet.law->points) {
       const T zeta = (layer.at + facet.offset) * thickness;
-      const T weight = p.weight * layer.weight *
-                       facet.law->plies[layer.ply].density * frame.area *
-                       thickness * determinant(shifter(frame.curvature, zeta));
-      visit(weight, plus(x, zeta, frame.axes[2]));
+      const T weight = p.weight * layer.weight * frame.area * thickness *
+                       determinant(shifter(frame.curvature, zeta));
+      visit(weight, layer.ply, plus(x, zeta, frame.axes[2]));
     }
   }
 }
@@ -33,7 +34,8 @@ MassMoments facet_moments(const Facet& facet, const Vec3& from) {
   for_each_mass(
       facet, triples(facet),
       [&](const FacetPoint& p) { return thickness_at(facet, p); },
-      [&](double mass, const Triple<double>& place) {
+      [&](double weight, int ply, const Triple<double>& place) {
+        const double mass = facet.law->plies[ply].density * weight;
         const Vec3 r = as_vector(place) - from;
         sum.mass += mass;
         sum.first += mass * r;
@@ -88,15 +90,18 @@ ShellGradient mass_integral(const ShellMesh& mesh,
         const Facet facet = facet_of(mesh, sections, laws, static_cast<int>(k));
         const TapedFacet taped(facet, tape);
         Taped sum(0.0);
+        std::vector<PlyGradient> by_ply(facet.law->plies.size());
         for_each_mass(
             facet, taped.X,
             [&](const FacetPoint& p) { return taped.thickness_at(p); },
-            [&](const Taped& mass, const Triple<Taped>& place) {
+            [&](const Taped& weight, int ply, const Triple<Taped>& place) {
               const Triple<Taped> r = {place[0] - from[0], place[1] - from[1],
                                        place[2] - from[2]};
-              sum = sum + mass * value_of(form, r);
+              const Taped of_unit = weight * value_of(form, r);
+              sum = sum + facet.law->plies[ply].density * of_unit;
+              by_ply[ply].density += of_unit.value;
             });
-        parts[k] = {sum.value, taped.transpose(sum)};
+        parts[k] = {sum.value, taped.transpose(sum), std::move(by_ply)};
       });
   return gradient_of(mesh, parts);
 }

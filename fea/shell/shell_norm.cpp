@@ -9,35 +9,36 @@
 #include "core/error.h"
 #include "core/parallel_for.h"
 #include "fea/shell/facet_loads.h"
+#include "fea/shell/shell_stress.h"
 #include "fea/shell/taped_facet.h"
 
 namespace meniscus::shell {
 
 namespace {
 
-/// Exact to degree two.
-const std::array<FacetPoint, 3>& norm_points() {
-  static const std::array<FacetPoint, 3> points = {
-      facet_point(1.0 / 6.0, 1.0 / 6.0), facet_point(2.0 / 3.0, 1.0 / 6.0),
-      facet_point(1.0 / 6.0, 2.0 / 3.0)};
-  return points;
-}
+/// Of the stress points: exact to degree two.
 constexpr double kPointWeight = 1.0 / 6.0;
 
-/// One face of the wall.
+/// One face of a ply.
 struct WallFace {
   double at;  // in thicknesses, from the middle
+  int number;
   const PlyLaw* ply;
   Vec3 free;      // strain of no stress in the surface
   double normal;  // stress across
 };
 
-std::array<WallFace, 2> faces_of(const Facet& facet, const WallState& state) {
+/// Of all plies, from the negative face on.
+std::vector<WallFace> faces_of(const Facet& facet, const WallState& state) {
   const LaminateLaw& law = *facet.law;
-  const auto face = [&](double at, const PlyLaw& ply) -> WallFace {
-    return {at, &ply, state.free_strain(ply, at), state.stress(at)};
-  };
-  return {face(-0.5, law.plies.front()), face(0.5, law.plies.back())};
+  std::vector<WallFace> faces;
+  for (std::size_t p = 0; p < law.plies.size(); ++p) {
+    for (const double at : {law.from[p], law.to[p]}) {
+      faces.push_back({at, static_cast<int>(p), &law.plies[p],
+                       state.free_strain(law.plies[p], at), state.stress(at)});
+    }
+  }
+  return faces;
 }
 
 /// Stress in the surface along the frame's axes: 11, 22, 12.
@@ -65,11 +66,11 @@ T von_mises_square(const Triple<T>& s, double normal) {
   return 0.5 * (a * a + b * b + c * c) + 3.0 * s[2] * s[2];
 }
 
-/// Of one facet: area, and both faces' squares at its points.
+/// Of one facet: area, and all faces' squares at its points.
 struct FaceSquares {
   double area = 0.0;
   std::array<double, 3> share = {};  // of the area
-  std::array<std::array<double, 2>, 3> square = {};
+  std::array<std::vector<double>, 3> square = {};
 };
 
 /// One facet with its solution.
@@ -85,37 +86,56 @@ FaceSquares squares_of(const SolvedFacet& solved) {
   const Facet& facet = solved.facet;
   const auto X = triples(facet);
   const Triple<double> bubble = bubble_turn(bubble_axes(X), solved.bubble);
-  const std::array<WallFace, 2> faces = faces_of(facet, solved.state);
+  const std::vector<WallFace> faces = faces_of(facet, solved.state);
   FaceSquares result;
   for (int q = 0; q < 3; ++q) {
-    const FacetPoint& p = norm_points()[q];
+    const FacetPoint& p = stress_points()[q];
     const FacetFrame<double> frame = facet_frame(X, p, facet.direction);
     const FacetStrain<double> strain =
         facet_strain(X, p, frame, solved.field, bubble);
     result.share[q] = kPointWeight * frame.area;
     result.area += result.share[q];
-    for (int k = 0; k < 2; ++k) {
-      const double zeta = (faces[k].at + facet.offset) * thickness_at(facet, p);
-      result.square[q][k] = von_mises_square(
-          face_stress(faces[k], frame, strain, zeta), faces[k].normal);
+    for (const WallFace& face : faces) {
+      const double zeta = (face.at + facet.offset) * thickness_at(facet, p);
+      result.square[q].push_back(von_mises_square(
+          face_stress(face, frame, strain, zeta), face.normal));
     }
   }
   return result;
 }
 
-/// What the norm is of: mean = sum of share / 2 (square / scale)^(power / 2)
-/// over the area.
+/// What the norm is of: the mean over the faces, by area, of a term of each
+/// square.
 struct NormTerms {
-  double power = 0.0;
-  double scale = 1.0;  // the largest square
-  double by_sum = 0.0;
+  double power = 0.0;      // of stresses over the largest; or
+  double sharpness = 0.0;  // of exponentials, where it is above 0 [1/pressure]
+  double scale = 1.0;      // the largest square
+  double by_sum = 0.0;     // the norm's derivatives
   double by_area = 0.0;
 
   double term(double square) const {
-    return std::pow(square / scale, 0.5 * power);
+    return sharpness > 0.0
+               ? std::exp(sharpness * (std::sqrt(square) - std::sqrt(scale)))
+               : std::pow(square / scale, 0.5 * power);
   }
   double slope(double square) const {
-    return square > 0.0 ? 0.5 * power * term(square) / square : 0.0;
+    if (!(square > 0.0)) {
+      return 0.0;
+    }
+    return term(square) * (sharpness > 0.0 ? 0.5 * sharpness / std::sqrt(square)
+                                           : 0.5 * power / square);
+  }
+  /// By the sum of terms times area, and the area.
+  double value(double sum, double area) const {
+    return sharpness > 0.0
+               ? std::sqrt(scale) + std::log(sum / area) / sharpness
+               : std::sqrt(scale) * std::pow(sum / area, 1.0 / power);
+  }
+  void differentiate(double sum, double area) {
+    const double size =
+        sharpness > 0.0 ? 1.0 / sharpness : value(sum, area) / power;
+    by_sum = sum > 0.0 ? size / sum : 0.0;
+    by_area = -size / area;
   }
 };
 
@@ -129,9 +149,10 @@ ByShape norm_by_shape(const SolvedFacet& solved, const NormTerms& terms,
   const Facet& facet = solved.facet;
   const TapedFacet taped(facet, tape);
   const Triple<Taped> bubble = taped.bubble(solved.bubble);
-  const std::array<WallFace, 2> faces = faces_of(facet, solved.state);
+  const std::vector<WallFace> faces = faces_of(facet, solved.state);
+  const double each = 1.0 / static_cast<double>(faces.size());
   Taped sum(0.0);
-  for (const FacetPoint& p : norm_points()) {
+  for (const FacetPoint& p : stress_points()) {
     const FacetFrame<Taped> frame = facet_frame(taped.X, p, facet.direction);
     const FacetStrain<Taped> strain =
         facet_strain(taped.X, p, frame, solved.field, bubble);
@@ -141,7 +162,7 @@ ByShape norm_by_shape(const SolvedFacet& solved, const NormTerms& terms,
       const Taped zeta = (face.at + facet.offset) * thickness;
       const Taped square =
           von_mises_square(face_stress(face, frame, strain, zeta), face.normal);
-      here = here + 0.5 * terms.by_sum *
+      here = here + each * terms.by_sum *
                         chain(square, terms.term(square.value),
                               terms.slope(square.value), 0.0);
     }
@@ -150,42 +171,51 @@ ByShape norm_by_shape(const SolvedFacet& solved, const NormTerms& terms,
   return taped.transpose(sum);
 }
 
-/// By the stresses of a face: from the square's derivative to the strain in
-/// the surface.
-Vec3 by_plane_strain(const WallFace& face, const Triple<double>& s,
-                     double by_square) {
-  const Vec3 by_stress(2.0 * s[0] - s[1] - face.normal,
-                       2.0 * s[1] - s[0] - face.normal, 6.0 * s[2]);
-  return by_square * face.ply->plane.transpose() * by_stress;
+/// From the square's derivative to the stress in the surface.
+Vec3 by_stress(const WallFace& face, const Triple<double>& s,
+               double by_square) {
+  return by_square * Vec3(2.0 * s[0] - s[1] - face.normal,
+                          2.0 * s[1] - s[0] - face.normal, 6.0 * s[2]);
 }
 
-/// By the nodes' numbers and the bubble, which strains are linear in.
+/// By the nodes' numbers and the bubble, which strains are linear in, and by
+/// the law.
 void add_by_unknowns(const SolvedFacet& solved, const NormTerms& terms,
                      FacetNormGradient& gradient) {
   const Facet& facet = solved.facet;
   const auto X = triples(facet);
   const auto axes = bubble_axes(X);
   const Triple<double> bubble = bubble_turn(axes, solved.bubble);
-  const std::array<WallFace, 2> faces = faces_of(facet, solved.state);
-  for (const FacetPoint& p : norm_points()) {
+  const std::vector<WallFace> faces = faces_of(facet, solved.state);
+  const double each = 1.0 / static_cast<double>(faces.size());
+  std::vector<double> zeta(faces.size());
+  std::vector<Vec3> by_plane(faces.size());
+  LawGradient by_law(*facet.law);
+  for (const FacetPoint& p : stress_points()) {
     const FacetFrame<double> frame = facet_frame(X, p, facet.direction);
     const FacetStrain<double> strain =
         facet_strain(X, p, frame, solved.field, bubble);
-    std::array<double, 2> zeta = {};
-    std::array<Vec3, 2> by_plane;
-    for (int k = 0; k < 2; ++k) {
-      zeta[k] = (faces[k].at + facet.offset) * thickness_at(facet, p);
-      const Triple<double> s = face_stress(faces[k], frame, strain, zeta[k]);
-      const double by_square =
-          0.5 * kPointWeight * frame.area * terms.by_sum *
-          terms.slope(von_mises_square(s, faces[k].normal));
-      by_plane[k] = by_plane_strain(faces[k], s, by_square);
+    for (std::size_t k = 0; k < faces.size(); ++k) {
+      const WallFace& face = faces[k];
+      zeta[k] = (face.at + facet.offset) * thickness_at(facet, p);
+      const Triple<double> s = face_stress(face, frame, strain, zeta[k]);
+      const Vec3 by =
+          by_stress(face, s,
+                    each * kPointWeight * frame.area * terms.by_sum *
+                        terms.slope(von_mises_square(s, face.normal)));
+      by_plane[k] = face.ply->plane.transpose() * by;
+      const LayerStrain<double> e = layer_strain(
+          strain, inverse(shifter(frame.curvature, zeta[k])), zeta[k]);
+      PlyLaw& law = by_law.by[face.number];
+      law.plane += by * (as_vector(e.plane) - face.free).transpose();
+      law.expansion -= solved.state.heat(face.at) * by_plane[k];
+      law.squeeze -= solved.state.stress(face.at) * by_plane[k];
     }
     const auto work = [&](const FacetField& field,
                           const Triple<double>& turned) {
       const FacetStrain<double> own = facet_strain(X, p, frame, field, turned);
       double sum = 0.0;
-      for (int k = 0; k < 2; ++k) {
+      for (std::size_t k = 0; k < faces.size(); ++k) {
         const LayerStrain<double> e = layer_strain(
             own, inverse(shifter(frame.curvature, zeta[k])), zeta[k]);
         sum += by_plane[k].dot(as_vector(e.plane));
@@ -202,6 +232,7 @@ void add_by_unknowns(const SolvedFacet& solved, const NormTerms& terms,
       gradient.by_whole[kUnknowns + k] += work(FacetField::Zero(), axes[k]);
     }
   }
+  gradient.by_ply = by_law.by_ply();
 }
 
 /// Of all facets: solved, their squares, and the norm.
@@ -216,17 +247,19 @@ class NormOfShell {
         laws_(laminate_laws(sections)),
         own_(facet_loads(mesh, loads)) {}
 
-  StressNorm find(double power, NormDerivatives derivatives) const {
+  /// `terms` says the kind of mean.
+  StressNorm find(NormTerms terms, NormDerivatives derivatives) const {
     std::vector<FaceSquares> squares(mesh_.facets.size());
     parallel_for(count(), [&](std::ptrdiff_t k) {
       squares[k] = squares_of(solved(static_cast<int>(k)));
     });
     double area = 0.0;
-    NormTerms terms{.power = power, .scale = 0.0};
+    terms.scale = 0.0;
     for (const FaceSquares& facet : squares) {
       area += facet.area;
-      for (const auto& at : facet.square) {
-        terms.scale = std::max({terms.scale, at[0], at[1]});
+      for (const std::vector<double>& at : facet.square) {
+        terms.scale =
+            std::max(terms.scale, *std::max_element(at.begin(), at.end()));
       }
     }
     StressNorm norm;
@@ -234,16 +267,18 @@ class NormOfShell {
     if (terms.scale > 0.0) {
       for (const FaceSquares& facet : squares) {
         for (int q = 0; q < 3; ++q) {
-          sum +=
-              0.5 * facet.share[q] *
-              (terms.term(facet.square[q][0]) + terms.term(facet.square[q][1]));
+          double own = 0.0;
+          for (const double square : facet.square[q]) {
+            own += terms.term(square);
+          }
+          sum += facet.share[q] * own /
+                 static_cast<double>(facet.square[q].size());
         }
       }
-      norm.value = std::sqrt(terms.scale) * std::pow(sum / area, 1.0 / power);
+      norm.value = terms.value(sum, area);
     }
     if (derivatives == NormDerivatives::All) {
-      terms.by_sum = sum > 0.0 ? norm.value / (power * sum) : 0.0;
-      terms.by_area = -norm.value / (power * area);
+      terms.differentiate(sum, area);
       if (!(terms.scale > 0.0)) {
         terms.scale = 1.0;
       }
@@ -294,6 +329,7 @@ class NormOfShell {
     }
     norm.by_nodes = std::move(state.by_nodes);
     norm.by_thickness = std::move(state.by_thickness);
+    norm.by_ply = std::move(state.by_ply);
   }
 
   const ShellMesh& mesh_;
@@ -304,12 +340,8 @@ class NormOfShell {
   std::vector<FacetLoad> own_;
 };
 
-}  // namespace
-
-StressNorm von_mises_norm(const ShellMesh& mesh,
-                          const std::vector<Section>& sections,
-                          const ShellLoads& loads, const VectorX& displacement,
-                          double power, NormDerivatives derivatives) {
+void check_solution(const ShellMesh& mesh, const std::vector<Section>& sections,
+                    const ShellLoads& loads, const VectorX& displacement) {
   check_shell(mesh, sections);
   check_loads(mesh, loads);
   if (displacement.size() != static_cast<Eigen::Index>(6 * mesh.nodes.size())) {
@@ -318,12 +350,36 @@ StressNorm von_mises_norm(const ShellMesh& mesh,
                     "six a node are needed",
                     mesh.nodes.size(), displacement.size()));
   }
+}
+
+}  // namespace
+
+StressNorm von_mises_norm(const ShellMesh& mesh,
+                          const std::vector<Section>& sections,
+                          const ShellLoads& loads, const VectorX& displacement,
+                          double power, NormDerivatives derivatives) {
+  check_solution(mesh, sections, loads, displacement);
   if (!(power > 1.0)) {
     throw InvalidInput(fmt::format(
         "a stress norm has the power {}; give it one above 1", power));
   }
   return NormOfShell(mesh, sections, loads, displacement)
-      .find(power, derivatives);
+      .find({.power = power}, derivatives);
+}
+
+StressNorm von_mises_ks(const ShellMesh& mesh,
+                        const std::vector<Section>& sections,
+                        const ShellLoads& loads, const VectorX& displacement,
+                        const StressKs& options, NormDerivatives derivatives) {
+  check_solution(mesh, sections, loads, displacement);
+  if (!(options.sharpness > 0.0) || !(options.scale > 0.0)) {
+    throw InvalidInput(fmt::format(
+        "a mean of exponentials has the sharpness {} and the scale {}; both "
+        "must be above 0",
+        options.sharpness, options.scale));
+  }
+  return NormOfShell(mesh, sections, loads, displacement)
+      .find({.sharpness = options.sharpness / options.scale}, derivatives);
 }
 
 }  // namespace meniscus::shell

@@ -1,5 +1,6 @@
 #include "fea/shell/shell_stress.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -45,26 +46,35 @@ struct WallPoint {
   const WallState& state;
 };
 
-Stress stress_at(const WallPoint& point, double at, double transverse) {
+Stress stress_at(const WallPoint& point, double at, int number) {
   const LaminateLaw& law = *point.facet.law;
-  const PlyLaw& ply = law.plies[ply_at(law, at)];
+  const PlyLaw& ply = law.plies[number];
   const double zeta = (at + point.facet.offset) * point.thickness;
   const LayerStrain<double> e = layer_strain(
       point.strain, inverse(shifter(point.frame.curvature, zeta)), zeta);
   const Vec3 strain = as_vector(e.plane) - point.state.free_strain(ply, at);
-  const Eigen::Vector2d across = transverse * law.shear_correction *
-                                 ply.across *
-                                 Eigen::Vector2d(e.across[0], e.across[1]);
+  const double transverse = 1.5 - 6.0 * at * at;
+  const Eigen::Vector2d across =
+      transverse * law.across * Eigen::Vector2d(e.across[0], e.across[1]);
   return global_stress(point.frame, ply.plane * strain, across,
                        point.state.stress(at));
 }
 
-/// Points (1/6, 1/6), (2/3, 1/6), (1/6, 2/3).
-const std::array<FacetPoint, 3>& inner_points() {
-  static const std::array<FacetPoint, 3> points = {
-      facet_point(1.0 / 6.0, 1.0 / 6.0), facet_point(2.0 / 3.0, 1.0 / 6.0),
-      facet_point(1.0 / 6.0, 2.0 / 3.0)};
-  return points;
+/// Of the whole wall.
+WallStress wall_stress(const WallPoint& point) {
+  const LaminateLaw& law = *point.facet.law;
+  return {stress_at(point, -0.5, 0), stress_at(point, 0.0, ply_at(law, 0.0)),
+          stress_at(point, 0.5, static_cast<int>(law.plies.size()) - 1)};
+}
+
+WallStress ply_stress(const WallPoint& point, int ply) {
+  const LaminateLaw& law = *point.facet.law;
+  if (ply >= static_cast<int>(law.plies.size())) {
+    return {};
+  }
+  return {stress_at(point, law.from[ply], ply),
+          stress_at(point, 0.5 * (law.from[ply] + law.to[ply]), ply),
+          stress_at(point, law.to[ply], ply)};
 }
 
 /// Linear functions through the inner points, at the nodes.
@@ -81,54 +91,119 @@ void add(WallStress& sum, double weight, const WallStress& stress) {
   }
 }
 
-FacetStress facet_stress(const Facet& facet, const ShellLoads& loads,
-                         const FacetLoad& own, const FacetVector& u) {
-  const auto X = triples(facet);
-  const Eigen::Vector2d b = bubble_rotation(whole_stiffness(facet),
-                                            facet_forces(facet, loads, own), u);
-  const WallState state = wall_state(loads, own);
-  const auto axes = bubble_axes(X);
-  const Triple<double> bubble = bubble_turn(axes, b);
-  const FacetField field = Eigen::Map<const FacetField>(u.data());
-  FacetStress result{};
-  for (int q = 0; q < 3; ++q) {
-    const FacetPoint& p = inner_points()[q];
-    const FacetFrame<double> frame = facet_frame(X, p, facet.direction);
-    const FacetStrain<double> strain = facet_strain(X, p, frame, field, bubble);
-    const WallPoint point{facet, frame, strain, thickness_at(facet, p), state};
-    const WallStress wall = {stress_at(point, -0.5, 0.0),
-                             stress_at(point, 0.0, 1.5),
-                             stress_at(point, 0.5, 0.0)};
-    for (int i = 0; i < kNodes; ++i) {
-      add(result[i], kOut[i][q], wall);
+/// A shell with its solution, and the bubbles that go with it.
+class SolvedShell {
+ public:
+  SolvedShell(const ShellMesh& mesh, const std::vector<Section>& sections,
+              const ShellLoads& loads, const VectorX& displacement)
+      : mesh_(mesh),
+        sections_(sections),
+        displacement_(displacement),
+        laws_(laminate_laws(sections)) {
+    check_shell(mesh, sections);
+    if (displacement.size() !=
+        static_cast<Eigen::Index>(6 * mesh.nodes.size())) {
+      throw InvalidInput(
+          fmt::format("a shell of {} nodes has a displacement of {} numbers; "
+                      "six a node are needed",
+                      mesh.nodes.size(), displacement.size()));
     }
+    const std::vector<FacetLoad> own = facet_loads(mesh, loads);
+    bubbles_.resize(mesh.facets.size());
+    states_.resize(mesh.facets.size());
+    parallel_for(count(), [&](std::ptrdiff_t k) {
+      const Facet facet =
+          facet_of(mesh_, sections_, laws_, static_cast<int>(k));
+      bubbles_[k] = bubble_rotation(
+          whole_stiffness(facet), facet_forces(facet, loads, own[k]),
+          numbers_of(mesh_, static_cast<int>(k), displacement_));
+      states_[k] = wall_state(loads, own[k]);
+    });
   }
-  return result;
-}
+
+  std::size_t most_plies() const {
+    std::size_t most = 0;
+    for (const LaminateLaw& law : laws_) {
+      most = std::max(most, law.plies.size());
+    }
+    return most;
+  }
+
+  /// at(point of the wall), facet by facet.
+  template <class At>
+  std::vector<FacetStress> stress(const At& at) const {
+    std::vector<FacetStress> result(mesh_.facets.size());
+    parallel_for(count(), [&](std::ptrdiff_t k) {
+      result[k] = facet_stress(static_cast<int>(k), at);
+    });
+    return result;
+  }
+
+ private:
+  std::ptrdiff_t count() const {
+    return static_cast<std::ptrdiff_t>(mesh_.facets.size());
+  }
+
+  template <class At>
+  FacetStress facet_stress(int f, const At& at) const {
+    const Facet facet = facet_of(mesh_, sections_, laws_, f);
+    const auto X = triples(facet);
+    const Triple<double> bubble = bubble_turn(bubble_axes(X), bubbles_[f]);
+    const FacetVector u = numbers_of(mesh_, f, displacement_);
+    const FacetField field = Eigen::Map<const FacetField>(u.data());
+    FacetStress result{};
+    for (int q = 0; q < 3; ++q) {
+      const FacetPoint& p = stress_points()[q];
+      const FacetFrame<double> frame = facet_frame(X, p, facet.direction);
+      const FacetStrain<double> strain =
+          facet_strain(X, p, frame, field, bubble);
+      const WallStress wall = at(
+          WallPoint{facet, frame, strain, thickness_at(facet, p), states_[f]});
+      for (int i = 0; i < kNodes; ++i) {
+        add(result[i], node_share(i, q), wall);
+      }
+    }
+    return result;
+  }
+
+  const ShellMesh& mesh_;
+  const std::vector<Section>& sections_;
+  const VectorX& displacement_;
+  std::vector<LaminateLaw> laws_;
+  std::vector<Eigen::Vector2d> bubbles_;
+  std::vector<WallState> states_;
+};
 
 }  // namespace
+
+const std::array<FacetPoint, 3>& stress_points() {
+  static const std::array<FacetPoint, 3> points = {
+      facet_point(1.0 / 6.0, 1.0 / 6.0), facet_point(2.0 / 3.0, 1.0 / 6.0),
+      facet_point(1.0 / 6.0, 2.0 / 3.0)};
+  return points;
+}
+
+double node_share(int node, int q) { return kOut[node][q]; }
 
 std::vector<FacetStress> shell_stress(const ShellMesh& mesh,
                                       const std::vector<Section>& sections,
                                       const ShellLoads& loads,
                                       const VectorX& displacement) {
-  check_shell(mesh, sections);
-  if (displacement.size() != static_cast<Eigen::Index>(6 * mesh.nodes.size())) {
-    throw InvalidInput(
-        fmt::format("a shell of {} nodes has a displacement of {} numbers; "
-                    "six a node are needed",
-                    mesh.nodes.size(), displacement.size()));
+  return SolvedShell(mesh, sections, loads, displacement).stress(wall_stress);
+}
+
+void visit_ply_stresses(
+    const ShellMesh& mesh, const std::vector<Section>& sections,
+    const ShellLoads& loads, const VectorX& displacement,
+    const std::function<void(int ply, const std::vector<FacetStress>& stress)>&
+        visit) {
+  const SolvedShell solved(mesh, sections, loads, displacement);
+  const auto plies = static_cast<int>(solved.most_plies());
+  for (int ply = 0; ply < plies; ++ply) {
+    visit(ply, solved.stress([ply](const WallPoint& point) {
+      return ply_stress(point, ply);
+    }));
   }
-  const std::vector<LaminateLaw> laws = laminate_laws(sections);
-  const std::vector<FacetLoad> own = facet_loads(mesh, loads);
-  std::vector<FacetStress> stress(mesh.facets.size());
-  parallel_for(
-      static_cast<std::ptrdiff_t>(stress.size()), [&](std::ptrdiff_t k) {
-        const int f = static_cast<int>(k);
-        stress[k] = facet_stress(facet_of(mesh, sections, laws, f), loads,
-                                 own[k], numbers_of(mesh, f, displacement));
-      });
-  return stress;
 }
 
 std::vector<FacetStress> averaged_stress(const ShellMesh& mesh,
@@ -156,7 +231,8 @@ std::vector<FacetStress> averaged_stress(const ShellMesh& mesh,
       WallStress sum{};
       double count = 0.0;
       for (const Use& other : at) {
-        if (own.normal.dot(other.normal) >= least) {
+        if (mesh.section[own.facet] == mesh.section[other.facet] &&
+            own.normal.dot(other.normal) >= least) {
           add(sum, 1.0, stress[other.facet][other.place]);
           count += 1.0;
         }

@@ -1,5 +1,7 @@
 #include "fea/shell/taped_facet.h"
 
+#include <algorithm>
+
 namespace meniscus::shell {
 
 TapedFacet::TapedFacet(const Facet& facet, Tape& tape) : tape_(&tape) {
@@ -49,6 +51,15 @@ void add_facet(const ShellMesh& mesh, int f, const FacetGradient& part,
   constexpr int kFirst = 3 * kNodes;
   sum.by_thickness[f] +=
       Vec3(part.by[kFirst], part.by[kFirst + 1], part.by[kFirst + 2]);
+  const auto section = static_cast<std::size_t>(mesh.section[f]);
+  sum.by_ply.resize(std::max(sum.by_ply.size(), section + 1));
+  std::vector<PlyGradient>& plies = sum.by_ply[section];
+  plies.resize(std::max(plies.size(), part.by_ply.size()));
+  for (std::size_t p = 0; p < part.by_ply.size(); ++p) {
+    plies[p].modulus += part.by_ply[p].modulus;
+    plies[p].density += part.by_ply[p].density;
+    plies[p].angle += part.by_ply[p].angle;
+  }
 }
 
 ShellGradient gradient_of(const ShellMesh& mesh,

@@ -36,6 +36,7 @@ struct TapedFacet {
 struct FacetGradient {
   double value = 0.0;
   ByShape by = {};
+  std::vector<PlyGradient> by_ply;  // empty: 0
 };
 
 /// Of no value, with its vectors' lengths.

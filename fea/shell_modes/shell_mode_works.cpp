@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "core/parallel_for.h"
 #include "fea/shell/facet_loads.h"
@@ -57,7 +58,78 @@ void add_by_places(const StressedFacet& at, Tape& tape, FacetWork& work) {
   work.by = taped.transpose(sum);
 }
 
-/// By the nodes' numbers and the bubble, which resultants are linear in.
+/// What one point's work is by each resultant, which it is linear in.
+FacetResultants<double> by_resultants(const FacetPoint& p,
+                                      const FacetFrame<double>& frame,
+                                      const FacetField& x) {
+  FacetResultants<double> unit{};
+  FacetResultants<double> by{};
+  const auto find = [&](double& one, double& of) {
+    one = 1.0;
+    of = second_work(p, frame, unit, x);
+    one = 0.0;
+  };
+  for (int a = 0; a < 2; ++a) {
+    for (int b = 0; b < 2; ++b) {
+      for (int k = 0; k < 3; ++k) {
+        find(unit.stress[k][a][b], by.stress[k][a][b]);
+      }
+    }
+    find(unit.shear[a], by.shear[a]);
+  }
+  find(unit.drilling, by.drilling);
+  for (int c = 0; c < 3; ++c) {
+    find(unit.lever[c], by.lever[c]);
+  }
+  return by;
+}
+
+/// By the law, at one point of which the area is `area`: facet_resultants()
+/// transposed.
+void add_by_law(const StressedFacet& at, const FacetFrame<double>& frame,
+                const FacetStrain<double>& strain, double thickness,
+                const FacetResultants<double>& by, double area,
+                LawGradient& sum) {
+  const LaminateLaw& law = *at.facet.law;
+  const WallState state = wall_state(at.loads, at.own);
+  for (const LayerPoint& layer : law.points) {
+    const PlyLaw& ply = law.plies[layer.ply];
+    PlyLaw& own = sum.by[layer.ply];
+    const double zeta = (layer.at + at.facet.offset) * thickness;
+    const Square<double> shift = shifter(frame.curvature, zeta);
+    const Square<double> back = inverse(shift);
+    const double weight = area * layer.weight * thickness * determinant(shift);
+    const LayerStrain<double> e = layer_strain(strain, back, zeta);
+    Vec3 on_stress = Vec3::Zero();
+    Eigen::Vector2d on_shear = Eigen::Vector2d::Zero();
+    for (int a = 0; a < 2; ++a) {
+      for (int i = 0; i < 2; ++i) {
+        on_shear[i] += weight * by.shear[a] * back[i][a];
+      }
+      for (int b = 0; b < 2; ++b) {
+        const double here =
+            weight * (by.stress[0][a][b] + zeta * by.stress[1][a][b] +
+                      zeta * zeta * by.stress[2][a][b]);
+        on_stress +=
+            here * Vec3(back[0][a] * back[0][b], back[1][a] * back[1][b],
+                        back[0][a] * back[1][b] + back[1][a] * back[0][b]);
+      }
+    }
+    own.plane +=
+        on_stress *
+        (as_vector(e.plane) - state.free_strain(ply, layer.at)).transpose();
+    const Vec3 on_free = -ply.plane.transpose() * on_stress;
+    own.expansion += state.heat(layer.at) * on_free;
+    own.squeeze += state.stress(layer.at) * on_free;
+    sum.by_across += on_shear * Eigen::RowVector2d(e.across[0], e.across[1]);
+    own.density += weight * zeta * as_vector(by.lever).dot(at.loads.gravity);
+  }
+  sum.by_mean_shear += area * by.drilling * kDrilling * thickness *
+                       (strain.stretch[0][1] - strain.stretch[1][0]);
+}
+
+/// By the nodes' numbers and the bubble, which resultants are linear in, and by
+/// the law.
 void add_by_numbers(const StressedFacet& at, FacetWork& work) {
   const auto X = triples(at.facet);
   const auto axes = bubble_axes(X);
@@ -67,10 +139,14 @@ void add_by_numbers(const StressedFacet& at, FacetWork& work) {
   StressedFacet unit{
       at.facet, none, unloaded, FacetField::Zero(), Eigen::Vector2d::Zero(),
       at.x};
+  LawGradient by_law(*at.facet.law);
+  const Triple<double> turned = bubble_turn(axes, at.bubble);
   for (const FacetPoint& p : facet_rule()) {
     const FacetFrame<double> frame = facet_frame(X, p, at.facet.direction);
     const double area = p.weight * frame.area;
     const double t = thickness_at(at.facet, p);
+    add_by_law(at, frame, facet_strain(X, p, frame, at.u, turned), t,
+               by_resultants(p, frame, at.x), area, by_law);
     for (int n = 0; n < kUnknowns; ++n) {
       unit.u(n % 6, n / 6) = 1.0;
       work.by_whole[n] += area * work_at(unit, X, p, frame, still, t);
@@ -81,6 +157,7 @@ void add_by_numbers(const StressedFacet& at, FacetWork& work) {
           area * work_at(unit, X, p, frame, axes[k], t);
     }
   }
+  work.by_ply = by_law.by_ply();
 }
 
 FacetField field_of(const ShellMesh& mesh, int facet, const VectorX& nodal) {
@@ -96,6 +173,7 @@ void add_gradient(double factor, const ShellGradient& more,
   for (std::size_t f = 0; f < more.by_thickness.size(); ++f) {
     sum.by_thickness[f] += factor * more.by_thickness[f];
   }
+  add_plies(factor, more.by_ply, sum.by_ply);
 }
 
 /// Twice the kinetic energy of unit frequency of one facet.
@@ -103,6 +181,7 @@ FacetGradient facet_inertia(const Facet& facet, const FacetField& x,
                             Tape& tape) {
   const TapedFacet taped(facet, tape);
   Taped sum(0.0);
+  std::vector<PlyGradient> by_ply(facet.law->plies.size());
   for (const FacetPoint& p : facet_rule()) {
     const FacetFrame<Taped> frame = facet_frame(taped.X, p, facet.direction);
     const Taped thickness = taped.thickness_at(p);
@@ -117,14 +196,15 @@ FacetGradient facet_inertia(const Facet& facet, const FacetField& x,
     for (const LayerPoint& layer : facet.law->points) {
       const Taped zeta = (layer.at + facet.offset) * thickness;
       const Triple<Taped> motion = plus(times(zeta, arm), 1.0, u);
-      density = density + facet.law->plies[layer.ply].density * layer.weight *
-                              thickness *
-                              determinant(shifter(frame.curvature, zeta)) *
-                              dot(motion, motion);
+      const Taped of_unit = layer.weight * thickness *
+                            determinant(shifter(frame.curvature, zeta)) *
+                            dot(motion, motion);
+      density = density + facet.law->plies[layer.ply].density * of_unit;
+      by_ply[layer.ply].density += p.weight * frame.area.value * of_unit.value;
     }
     sum = sum + p.weight * frame.area * density;
   }
-  return {sum.value, taped.transpose(sum)};
+  return {sum.value, taped.transpose(sum), std::move(by_ply)};
 }
 
 }  // namespace

@@ -141,7 +141,8 @@ class ShellWriter {
     for (std::size_t s = 0; s < deck_.sections.size(); ++s) {
       const DeckShellSection& section = deck_.sections[s];
       add("** shell '{}' is ELSET SHELL_{}, of '{}'\n",
-          io::one_line(section.name), s, io::one_line(section.material.name));
+          io::one_line(section.name), s,
+          io::one_line(section.plies.front().material.name));
       if (section.offset != 0.0) {
         add("** its wall lies on one side of the nodes: CalculiX holds and "
             "prints its middle\n");
@@ -208,8 +209,15 @@ class ShellWriter {
   void sections() {
     for (std::size_t s = 0; s < deck_.sections.size(); ++s) {
       const DeckShellSection& section = deck_.sections[s];
+      if (!is_plain(section)) {
+        throw InvalidInput(fmt::format(
+            "shell '{}' is orthotropic or of layers, which a deck of CalculiX "
+            "has none for on six-node shells of any shape; write the deck of "
+            "Nastran (bdf)",
+            section.name));
+      }
       const std::string material = fmt::format("MATERIAL_{}", s);
-      add("{}", io::constants_text(section.material, material));
+      add("{}", io::constants_text(section.plies.front().material, material));
       // OFFSET is of the nodes over the middle.
       add("*SHELL SECTION, ELSET=SHELL_{}, MATERIAL={}, OFFSET={:g}{}\n{:.12e}"
           "\n",

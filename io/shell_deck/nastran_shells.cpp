@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "core/atomic_file.h"
+#include "core/error.h"
 #include "io/nastran_bdf.h"
 #include "io/nastran_fields.h"
 #include "io/nastran_material.h"
@@ -139,29 +140,76 @@ class ShellBulk {
   }
 
   void sections() {
+    int material = 0;
     for (std::size_t s = 0; s < deck_.sections.size(); ++s) {
       const DeckShellSection& section = deck_.sections[s];
       const std::string id = number(static_cast<int>(s) + 1);
       even_.push_back(even_thickness(deck_, static_cast<int>(s)));
       comment(fmt::format("shell '{}', of '{}'", section.name,
-                          section.material.name));
-      text_ += io::long_card(
-          "PSHELL",
-          {id, id, even_[s] ? io::nastran_real(*even_[s]) : "", id, "", id});
-      text_ += io::isotropic_card(section.material, static_cast<int>(s) + 1);
+                          section.plies.front().material.name));
+      if (is_plain(section)) {
+        const std::string own = number(++material);
+        text_ += io::long_card(
+            "PSHELL", {id, own, even_[s] ? io::nastran_real(*even_[s]) : "",
+                       own, "", own});
+        text_ += io::isotropic_card(section.plies.front().material, material);
+      } else {
+        layers(static_cast<int>(s), material);
+      }
     }
   }
 
-  /// G1 to G6, THETA, ZOFFS, T1 to T3.
+  /// PCOMP, a material each ply, and the axes that angles count from.
+  void layers(int s, int& material) {
+    const DeckShellSection& section = deck_.sections[s];
+    if (!even_[s]) {
+      throw InvalidInput(fmt::format(
+          "shell '{}' is orthotropic or of layers, and its thickness follows "
+          "the place; a deck of Nastran has one thickness a ply: give it a "
+          "single number",
+          section.name));
+    }
+    const double t = *even_[s];
+    io::Fields fields = {number(s + 1),
+                         io::nastran_real((section.offset - 0.5) * t)};
+    fields.resize(8);
+    std::string materials;
+    for (const DeckPly& ply : section.plies) {
+      fields.insert(
+          fields.end(),
+          {number(++material), io::nastran_real(ply.share * t),
+           io::nastran_real(ply.angle * 180.0 / std::numbers::pi), "YES"});
+      materials += io::ply_card(ply.material, material);
+    }
+    text_ += io::long_card("PCOMP", fields) + materials;
+    if (section.direction) {
+      const int frame = static_cast<int>(frames_.size()) + 1 + s;
+      io::Fields axes = {number(frame), "0"};
+      append_vector(Vec3::Zero(), axes);
+      append_vector(section.direction->unitOrthogonal(), axes);
+      append_vector(section.direction->normalized(), axes);
+      text_ += io::long_card("CORD2R", axes);
+    }
+  }
+
+  /// G1 to G6, THETA or the axes it counts from, ZOFFS, T1 to T3.
   void elements() {
     for (std::size_t f = 0; f < deck_.facets.size(); ++f) {
       const int s = deck_.section[f];
+      const DeckShellSection& section = deck_.sections[s];
       io::Fields fields = {number(static_cast<int>(f) + 1), number(s + 1)};
       for (const int node : deck_.facets[f]) {
         fields.push_back(number(node + 1));
       }
+      if (!is_plain(section)) {
+        if (section.direction) {
+          fields.push_back(number(static_cast<int>(frames_.size()) + 1 + s));
+        }
+        text_ += io::long_card("CTRIA6", fields);
+        continue;
+      }
       const Vec3 t(deck_.thickness[f].data());
-      const double offset = deck_.sections[s].offset * t.mean();
+      const double offset = section.offset * t.mean();
       fields.insert(fields.end(),
                     {"", offset != 0.0 ? io::nastran_real(offset) : ""});
       if (!even_[s]) {

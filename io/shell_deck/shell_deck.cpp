@@ -35,6 +35,23 @@ void check_facets(const ShellDeck& deck) {
   }
 }
 
+void check_sections(const ShellDeck& deck) {
+  for (const DeckShellSection& section : deck.sections) {
+    if (section.plies.empty()) {
+      throw InvalidInput(fmt::format(
+          "section '{}' of the deck has no ply; give it one", section.name));
+    }
+    for (const DeckPly& ply : section.plies) {
+      if (ply.material.orthotropic && !section.direction) {
+        throw InvalidInput(
+            fmt::format("section '{}' of the deck has a ply of '{}', which is "
+                        "orthotropic, and no direction; give it one",
+                        section.name, ply.material.name));
+      }
+    }
+  }
+}
+
 void check_step(const ShellDeck& deck, const DeckShellStep& step) {
   const auto nodes = static_cast<int>(deck.nodes.size());
   const auto facets = static_cast<int>(deck.facets.size());
@@ -77,9 +94,15 @@ void check_step(const ShellDeck& deck, const DeckShellStep& step) {
 
 void check_shell_deck(const ShellDeck& deck) {
   check_facets(deck);
+  check_sections(deck);
   for (const DeckShellStep& step : deck.steps) {
     check_step(deck, step);
   }
+}
+
+bool is_plain(const DeckShellSection& section) {
+  return section.plies.size() == 1 &&
+         !section.plies.front().material.orthotropic;
 }
 
 std::optional<double> even_thickness(const ShellDeck& deck, int section) {

@@ -13,13 +13,24 @@
 
 namespace meniscus::shell_deck {
 
+/// An orthotropic one's own axes are not read: axis 1 lies in the facet, turned
+/// by `angle` about the normal from the section's direction.
+struct DeckPly {
+  io::DeckMaterial material;
+  double share = 1.0;  // of the thickness; all of a section sum to 1
+  double angle = 0.0;  // [rad]
+};
+
 /// How facets' walls lie and what they are made of.
 struct DeckShellSection {
   std::string name;
-  io::DeckMaterial material;  // isotropic
+  std::vector<DeckPly> plies;  // from the negative face on
   /// Middle of the wall over the nodes along the facet's normal, in
   /// thicknesses.
   double offset = 0.0;
+  /// Whose projection on a facet angles count from; needed for orthotropic
+  /// plies.
+  std::optional<Vec3> direction = {};
 };
 
 struct DeckNodeSet {
@@ -66,6 +77,9 @@ struct ShellDeck {
 /// Throws InvalidInput, naming facet, node or step, for what is missing or does
 /// not fit.
 void check_shell_deck(const ShellDeck& deck);
+
+/// One ply that is alike in all directions.
+bool is_plain(const DeckShellSection& section);
 
 /// The one thickness of a section's facets, where they have one.
 std::optional<double> even_thickness(const ShellDeck& deck, int section);

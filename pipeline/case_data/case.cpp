@@ -496,6 +496,11 @@ Inputs inputs_of(const Case& input, const CaseValues& values) {
         input, input.materials[static_cast<std::size_t>(body.material)],
         values));
   }
+  for (const ShellEntry& shell : input.shells) {
+    for (const LayerEntry& layer : shell.layers) {
+      result.layer_angles.push_back(values.at(layer.angle));
+    }
+  }
   for (const LoadCaseEntry& entry : input.load_cases) {
     result.load_cases.push_back(load_case_of(entry, values));
   }
@@ -537,13 +542,15 @@ std::vector<BodyEntry> solid_bodies(const Case& input) {
     return solid;
   }
   for (const ShellEntry& shell : input.shells) {
-    solid.push_back({.name = shell.name,
-                     .enclosed_by = shell.films,
-                     .volume = {},
-                     .pressure = {},
-                     .material = shell.material,
-                     .line = shell.line,
-                     .enclosure_line = shell.line});
+    for (const LayerEntry& layer : shell.layers) {
+      solid.push_back({.name = shell.name,
+                       .enclosed_by = shell.films,
+                       .volume = {},
+                       .pressure = {},
+                       .material = layer.material,
+                       .line = shell.line,
+                       .enclosure_line = shell.line});
+    }
   }
   return solid;
 }

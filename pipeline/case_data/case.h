@@ -80,7 +80,7 @@ struct Case {
 
 /// The bodies that are not void, in order: the regions of the mesh. Without
 /// such bodies the walls that have a material, one for each set of walls that
-/// meet, named after its first; without these the shells.
+/// meet, named after its first; without these the layers of shells.
 std::vector<BodyEntry> solid_bodies(const Case& input);
 
 /// What a response depends on beside fields.
@@ -107,7 +107,8 @@ struct StageInputs {
   std::vector<walls::WallSpec> walls;
   std::vector<walls::WallSpec> shells;
   std::vector<element::Material>
-      materials;  // one per body that is solid, in order
+      materials;                     // one per body that is solid, in order
+  std::vector<double> layer_angles;  // of shells: one per material [rad]
   std::vector<loads::LoadCase> load_cases;
   std::vector<ResponseInputs> responses;
 };

@@ -68,7 +68,9 @@ void check_use(const Case& input, CaseProblems& problems) {
   }
   for (const ShellEntry& shell : input.shells) {
     used_surfaces.insert(shell.films.begin(), shell.films.end());
-    used_materials.insert(shell.material);
+    for (const LayerEntry& layer : shell.layers) {
+      used_materials.insert(layer.material);
+    }
   }
   for (const FilmEntry& film : input.films) {
     used_curves.insert(film.spec.curves.begin(), film.spec.curves.end());

@@ -249,13 +249,24 @@ struct WallEntry {
   SourceLine line = 0;
 };
 
+/// One of those that a shell is made of.
+struct LayerEntry {
+  int material = 0;    // index into materials
+  double share = 1.0;  // of the thickness, in parts of the sum of all shares
+  Quantity angle;      // about the normal to the outside [rad]
+  SourceLine line = 0;
+};
+
 /// Films solved on their own facets.
 struct ShellEntry {
   std::string name;
   std::vector<std::string> films;
   PlaceQuantity thickness;
   walls::WallSide side = walls::WallSide::Both;
-  int material = 0;  // index into materials
+  std::vector<LayerEntry> layers;  // from the inside to the outside; 1 or more
+  /// Angles count from its projection on the film; nothing: from that of the
+  /// layers' own axis 1.
+  std::optional<Vec3> direction = {};
   SourceLine line = 0;
 };
 

@@ -31,11 +31,18 @@ struct Backward {
   responses::ResponsePartials partials;
   std::vector<BackwardCase> cases;  // of the partials'
   std::vector<double> by_density;   // per region, of all stages
-  std::vector<double> by_modulus;   // likewise; both empty: 0
+  std::vector<double> by_modulus;   // likewise
+  std::vector<double> by_angle;     // of shells' layers; empty, all: 0
   frozen::FilmGradient film;
   std::vector<VectorX> by_thickness;  // of walls; empty: 0
   VectorX by_radius;                  // of fillets; empty: 0
 };
+
+void add(const std::vector<double>& more, std::vector<double>& sum) {
+  sum.resize(std::max(sum.size(), more.size()), 0.0);
+  std::transform(more.begin(), more.end(), sum.begin(), sum.begin(),
+                 std::plus<>());
+}
 
 class Adjoint {
  public:
@@ -119,12 +126,16 @@ void Adjoint::solve_shell_adjoints(DesignGradient& result) {
   }
 }
 
-/// Nodes and thicknesses to the film's points and the thicknesses' numbers.
+/// Nodes and thicknesses to the film's points and the thicknesses' numbers;
+/// layers.
 void Adjoint::through_shell(Backward& backward) const {
   const shells::ShellPart& shell = *in_.context.shell;
   responses::ResponsePartials& partials = backward.partials;
   partials.by_nodes.resize(shell.mesh.nodes.size(), Vec3::Zero());
   partials.by_thickness.resize(shell.mesh.facets.size(), Vec3::Zero());
+  add(partials.by_density, backward.by_density);
+  add(partials.by_modulus, backward.by_modulus);
+  add(partials.by_angle, backward.by_angle);
   for (const BackwardCase& back : backward.cases) {
     const auto c = static_cast<std::size_t>(back.load_case);
     const shell::ShellGradient state = shells::work_gradient(
@@ -135,6 +146,11 @@ void Adjoint::through_shell(Backward& backward) const {
     for (std::size_t f = 0; f < state.by_thickness.size(); ++f) {
       partials.by_thickness[f] += state.by_thickness[f];
     }
+    const shells::LayerGradient layers =
+        shells::layer_gradient(shell, state.by_ply);
+    add(layers.density, backward.by_density);
+    add(layers.modulus, backward.by_modulus);
+    add(layers.angle, backward.by_angle);
   }
   const shells::ShellModel& model = *in_.part.shells;
   Points by_film =
@@ -219,12 +235,6 @@ bool Adjoint::materials_move() const {
                (!entry.orthotropic &&
                 values.follows_design(entry.youngs_modulus));
       });
-}
-
-void add(const std::vector<double>& more, std::vector<double>& sum) {
-  sum.resize(std::max(sum.size(), more.size()), 0.0);
-  std::transform(more.begin(), more.end(), sum.begin(), sum.begin(),
-                 std::plus<>());
 }
 
 /// lambda . (f - K u) by the materials, and the loads' part of the response
@@ -357,6 +367,9 @@ double Adjoint::rate(const Backward& backward,
   for (std::size_t k = 0; k < backward.by_modulus.size(); ++k) {
     sum += backward.by_modulus[k] * rates.materials[k].youngs_modulus;
   }
+  for (std::size_t k = 0; k < backward.by_angle.size(); ++k) {
+    sum += backward.by_angle[k] * rates.layer_angles[k];
+  }
   for (std::size_t w = 0; w < backward.by_thickness.size(); ++w) {
     const walls::WallSpec& wall =
         in_.context.shell != nullptr ? rates.shells[w] : rates.walls[w];
@@ -410,7 +423,7 @@ DesignGradient Adjoint::run(const std::vector<int>& wanted) {
   }
   // Backwards through tetrahedra, surface and walls to the film; the film's
   // adjoint takes all responses at once.
-  const bool materials = materials_move();
+  const bool materials = in_.context.shell == nullptr && materials_move();
   for (Backward& backward : backwards_) {
     through_mesh(backward);
     if (materials) {

@@ -1,5 +1,7 @@
 #include "pipeline/forward/shell_figures.h"
 
+#include "fea/element/stress_measures.h"
+
 namespace meniscus::forward {
 
 void find_shell_stresses(shells::ShellPart& part) {
@@ -11,25 +13,34 @@ void find_shell_stresses(shells::ShellPart& part) {
 StressFigures shell_figures(const EvaluationFields& fields,
                             std::size_t load_case) {
   const shells::ShellPart& part = *fields.shell;
-  const shells::ShellPeak peak =
-      shells::shell_peak(part, part.cases[load_case].stress);
-  StressFigures figures{.load_case = fields.inputs.load_cases[load_case].name,
-                        .max_von_mises = peak.von_mises,
-                        .position = peak.position};
-  const stress::Peak same{.von_mises = peak.von_mises,
-                          .position = peak.position};
+  StressFigures figures{.load_case = fields.inputs.load_cases[load_case].name};
+  double largest_ratio = 0.0;
+  shells::visit_nodal_stresses(
+      part, load_case,
+      [&](int facet, int node, int layer, const element::Stress& stress) {
+        const double von_mises = element::von_mises(stress);
+        const Vec3& at = part.mesh.nodes[part.mesh.facets[facet][node]];
+        if (von_mises > figures.max_von_mises) {
+          figures.max_von_mises = von_mises;
+          figures.position = at;
+        }
+        const element::Material& material = fields.inputs.materials[layer];
+        const double ratio = material.yield_strength
+                                 ? von_mises / *material.yield_strength
+                                 : 0.0;
+        if (ratio > largest_ratio) {
+          largest_ratio = ratio;
+          figures.safety =
+              StressFigures::Safety{.factor = 1.0 / ratio,
+                                    .von_mises = von_mises,
+                                    .position = at,
+                                    .material = material.name,
+                                    .yield_strength = *material.yield_strength};
+        }
+      });
+  const stress::Peak same{.von_mises = figures.max_von_mises,
+                          .position = figures.position};
   figures.readings = {.recovered = same, .averaged = same, .points = same};
-  // Of the weakest material at its peak: sections may differ.
-  const element::Material& material =
-      fields.inputs.materials[part.mesh.section[peak.facet]];
-  if (material.yield_strength && peak.von_mises > 0.0) {
-    figures.safety = StressFigures::Safety{
-        .factor = *material.yield_strength / peak.von_mises,
-        .von_mises = peak.von_mises,
-        .position = peak.position,
-        .material = material.name,
-        .yield_strength = *material.yield_strength};
-  }
   return figures;
 }
 

@@ -111,6 +111,7 @@ void find_regions(CaseContext& context, case_data::Case& result) {
   }
 }
 
+/// kVoid without the key, and where there is no such material.
 int material_of(CaseContext& context, const CaseTable& table,
                 const case_data::Case& result) {
   const auto wanted = table.text("material");
@@ -214,13 +215,103 @@ TableSpec shell_table() {
        {"thickness", K::Field, D::Length, true,
         "above 0; the film takes it along: of x, y, z where the frozen film "
         "is"},
-       {"material", K::Name, D::None, true, "isotropic"},
+       {"material", K::Name, D::None, false,
+        "of the whole thickness; or layers. Axis 1 of an orthotropic one lies "
+        "along its projection on the film, axis 3 along the normal to the "
+        "outside"},
+       {"layers", K::Layers, D::None, false,
+        "what the thickness is made of, from the inside to the outside"},
+       {"direction", K::ConstantVector, std::nullopt, false,
+        "angles of layers count from its projection on the film, which must "
+        "have one everywhere; axis 1 of their materials when left out"},
        {"side", K::Choice, D::None, false,
         "where the material lies: both sides of the film, all of it inside "
         "(towards the middle of the film's curves) or outside; both when left "
         "out",
         case_data::choices_of(wall_sides())}}};
 }
+
+TableSpec layer_table() {
+  using D = Dimension;
+  using K = KeyType;
+  return {"layer",
+          false,
+          TableNeed::Optional,
+          "A layer of a shell",
+          {{"material", K::Name, D::None, true,
+            "of an orthotropic one axis 3 is the normal to the outside"},
+           {"share", K::Constant, D::None, false,
+            "of the thickness, in parts of the sum of all shares, above 0; 1 "
+            "when left out"},
+           {"angle", K::Quantity, D::Angle, false,
+            "of an orthotropic material: of its axis 1 from the direction, "
+            "about the normal to the outside; 0 when left out"}}};
+}
+
+namespace {
+
+/// Of `material`, or of `layers`.
+std::vector<case_data::LayerEntry> read_layers(CaseContext& context,
+                                               const CaseTable& table,
+                                               const case_data::Case& result) {
+  std::vector<case_data::LayerEntry> layers;
+  if (table.has("material") == table.has("layers")) {
+    context.problems.add(
+        table.line(),
+        fmt::format("{} has {} of 'material' and 'layers'; expected one: "
+                    "material = what its whole thickness is, or layers = a "
+                    "list of them",
+                    table.path(), table.has("material") ? "both" : "none"));
+  }
+  const auto add = [&](const CaseTable& of, case_data::LayerEntry layer) {
+    layer.material = std::max(0, material_of(context, of, result));
+    layer.line = of.line();
+    layers.push_back(std::move(layer));
+  };
+  for (const CaseTable& part : table.tables("layers", "layer")) {
+    add(part, {.share = constant_above(context, part, "share", 0.0, 1.0),
+               .angle = part.quantity_or_zero("angle")});
+  }
+  if (layers.empty()) {
+    add(table, {});
+  }
+  return layers;
+}
+
+/// Angles count from one direction.
+void check_direction(CaseContext& context, const CaseTable& table,
+                     const case_data::ShellEntry& shell,
+                     const case_data::Case& result) {
+  if (shell.direction) {
+    if (shell.direction->isZero(0.0)) {
+      context.problems.add(table.line("direction"),
+                           fmt::format("{}.direction is 0, which is none; "
+                                       "give it a length",
+                                       table.path()));
+    }
+    return;
+  }
+  const case_data::MaterialEntry* first = nullptr;
+  for (const case_data::LayerEntry& layer : shell.layers) {
+    const auto k = static_cast<std::size_t>(layer.material);
+    if (k >= result.materials.size() || !result.materials[k].orthotropic) {
+      continue;
+    }
+    const case_data::MaterialEntry& own = result.materials[k];
+    if (first != nullptr &&
+        own.orthotropic->axes.first != first->orthotropic->axes.first) {
+      context.problems.add(
+          layer.line,
+          fmt::format("{} has layers of '{}' and '{}', whose axes 1 differ; "
+                      "give it the direction that its angles count from",
+                      table.path(), first->name, own.name));
+      return;
+    }
+    first = &own;
+  }
+}
+
+}  // namespace
 
 void read_shells(CaseContext& context, const toml::table& root,
                  case_data::Case& result) {
@@ -233,7 +324,9 @@ void read_shells(CaseContext& context, const toml::table& root,
     shell.side = case_data::row_named(wall_sides(),
                                       table.choice("side").value_or("both"))
                      .value;
-    shell.material = std::max(0, material_of(context, table, result));
+    shell.layers = read_layers(context, table, result);
+    shell.direction = table.constant_vector("direction");
+    check_direction(context, table, shell, result);
     result.shells.push_back(std::move(shell));
   }
 }

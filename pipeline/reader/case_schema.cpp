@@ -78,6 +78,7 @@ std::vector<TableSpec> make_tables() {
       fillet_table(),
       wall_table(),
       shell_table(),
+      layer_table(),
       shape_table(),
       field_table(),
       spine_table(),
@@ -213,9 +214,9 @@ std::vector<TableSpec> make_tables() {
 
 bool can_repeat(const std::string& table) {
   static const std::vector<std::string> tables = {
-      "curves",    "films",   "solids", "bodies",     "fillets",
-      "walls",     "shells",  "fields", "spines",     "support",
-      "responses", "exclude", "load",   "constraint", "drop"};
+      "curves", "films",      "solids", "bodies",  "fillets",   "walls",
+      "shells", "fields",     "spines", "support", "responses", "exclude",
+      "load",   "constraint", "drop",   "layer"};
   return std::find(tables.begin(), tables.end(), table) != tables.end();
 }
 
@@ -272,7 +273,8 @@ std::string either_of(std::vector<std::string> names) {
 
 bool is_entry_table(const std::string& name) {
   return name == "support" || name == "load" || name == "exclude" ||
-         name == "plane" || name == "constraint" || name == "drop";
+         name == "plane" || name == "constraint" || name == "drop" ||
+         name == "layer";
 }
 
 bool is_later_table(const std::string& name) {

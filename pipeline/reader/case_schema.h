@@ -46,6 +46,7 @@ enum class KeyType {
   Loads,           // array of inline tables: table "load"
   Zones,           // array of inline tables: table "exclude"
   Spheroids,       // array of inline tables: table "drop"
+  Layers,          // array of inline tables: table "layer"
   Planes,          // array of inline tables: table "plane"
   Constraints,     // array of inline tables: table "constraint"
   Members          // tables by name, or the name of a csv file
@@ -86,6 +87,7 @@ TableSpec drop_table();      // the same
 TableSpec solid_table();     // the same
 TableSpec wall_table();      // case_reader_walls.cpp
 TableSpec shell_table();     // the same
+TableSpec layer_table();     // the same
 TableSpec fillet_table();    // the same
 TableSpec shape_table();     // case_reader_shapes.cpp
 TableSpec field_table();     // case_reader_energies.cpp

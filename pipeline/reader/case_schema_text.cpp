@@ -79,6 +79,8 @@ const char* type_text(const KeySpec& key) {
       return "zones";
     case K::Spheroids:
       return "spheroids";
+    case K::Layers:
+      return "layers";
     case K::Planes:
       return "planes";
     case K::Constraints:
@@ -98,8 +100,9 @@ const char* dimension_text(const KeySpec& key) {
       key.type != K::Flag && key.type != K::Sides &&
       key.type != K::IntegerMap && key.type != K::Supports &&
       key.type != K::Loads && key.type != K::Zones &&
-      key.type != K::Spheroids && key.type != K::Planes &&
-      key.type != K::Constraints && key.type != K::Members;
+      key.type != K::Spheroids && key.type != K::Layers &&
+      key.type != K::Planes && key.type != K::Constraints &&
+      key.type != K::Members;
   if (key.type == K::ConstantMap) {
     return "the response's";
   }
@@ -278,6 +281,8 @@ Json type_schema(const KeySpec& key) {
       return array(object_schema(case_table("exclude")), 1, 0);
     case K::Spheroids:
       return array(object_schema(case_table("drop")), 1, 0);
+    case K::Layers:
+      return array(object_schema(case_table("layer")), 1, 0);
     case K::Planes:
       return array(object_schema(case_table("plane")), 1, 3);
     case K::Constraints:

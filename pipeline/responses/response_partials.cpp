@@ -487,6 +487,7 @@ void multiply(ResponsePartials& partials, double factor) {
   multiply_all(partials.by_pin_point, factor);
   multiply_all(partials.by_density, factor);
   multiply_all(partials.by_modulus, factor);
+  multiply_all(partials.by_angle, factor);
   frozen::FilmCovector& film = partials.film;
   multiply_all(film.points, factor);
   film.pressures *= factor;

@@ -28,6 +28,10 @@ ResponsePartials fatigue(const ResponseTask& task);
 /// faces and films.
 std::optional<ResponsePartials> shell_partials(const ResponseTask& task);
 
+/// Without load cases.
+ResponsePartials shell_to_partials(const shells::ShellPart& part,
+                                   shell::ShellGradient gradient);
+
 /// Of a load case, 3 per node: its loads' work and strain energy.
 ResponsePartials energy_of(const ResponseTask& task,
                            const loads::LoadCase& load_case, const VectorX& u);

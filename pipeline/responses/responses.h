@@ -58,9 +58,11 @@ struct ResponsePartials {
   std::optional<Vec3> worst_direction;
   Vec3 by_direction = Vec3::Zero();
   Vec3 by_point = Vec3::Zero();
-  Points by_pin_point;             // of the response's load case: of its modes
-  std::vector<double> by_density;  // per region
-  std::vector<double> by_modulus;  // Young's, per region; displacement held
+  Points by_pin_point;  // of the response's load case: of its modes
+  // Per region, of shells per layer; displacement held:
+  std::vector<double> by_density;
+  std::vector<double> by_modulus;  // Young's
+  std::vector<double> by_angle;    // of shells [value/rad]
   frozen::FilmCovector film;
 };
 

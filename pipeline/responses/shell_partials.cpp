@@ -1,3 +1,5 @@
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "fea/shell/shell_moments.h"
@@ -10,12 +12,12 @@ namespace meniscus::responses {
 
 namespace {
 
-ResponsePartials shell_to_partials(shell::ShellGradient gradient) {
-  ResponsePartials result;
-  result.value = gradient.value;
-  result.by_nodes = std::move(gradient.by_nodes);
-  result.by_thickness = std::move(gradient.by_thickness);
-  return result;
+void add_layers(const shells::ShellPart& part,
+                const shell::PlyGradients& by_ply, ResponsePartials& result) {
+  shells::LayerGradient by = shells::layer_gradient(part, by_ply);
+  result.by_modulus = std::move(by.modulus);
+  result.by_density = std::move(by.density);
+  result.by_angle = std::move(by.angle);
 }
 
 /// u . K u / 2, which what is held at other than 0 has a part in.
@@ -56,7 +58,8 @@ ResponsePartials shell_energy(const ResponseTask& task) {
   const double share = strain ? 0.5 : 1.0;
   ResponsePartials result;
   if (task.derivatives == element::Derivatives::All) {
-    result = shell_to_partials(shells::work_gradient(part, load_case, share * u,
+    result = shell_to_partials(part,
+                               shells::work_gradient(part, load_case, share * u,
                                                      VectorX::Zero(u.size())));
     result.cases.push_back({.load_case = task.response.load_case,
                             .by_displacement = share * forces,
@@ -70,8 +73,10 @@ ResponsePartials shell_energy(const ResponseTask& task) {
 
 /// The mass of a density of 1.
 ResponsePartials shell_volume(const shells::ShellPart& part) {
-  return shell_to_partials(
-      shell::shell_mass(part.mesh, shells::with_density(part.sections, 1.0)));
+  shell::ShellGradient gradient =
+      shell::shell_mass(part.mesh, shells::with_density(part.sections, 1.0));
+  gradient.by_ply.clear();
+  return shell_to_partials(part, std::move(gradient));
 }
 
 /// Along the direction, made unit: the first moment over the mass.
@@ -90,8 +95,9 @@ ResponsePartials shell_centre(const ResponseTask& task) {
   const Vec3 centre = moments.first / moments.mass;
   ResponsePartials result;
   if (task.derivatives == element::Derivatives::All) {
-    result = shell_to_partials(shell::mass_integral(
-        part.mesh, part.sections, {.linear = unit / moments.mass}, centre));
+    result = shell_to_partials(
+        part, shell::mass_integral(part.mesh, part.sections,
+                                   {.linear = unit / moments.mass}, centre));
     result.by_direction = (centre - unit.dot(centre) * unit) / length;
   }
   result.value = unit.dot(centre);
@@ -115,8 +121,9 @@ ResponsePartials shell_inertia(const ResponseTask& task) {
   ResponsePartials result;
   if (task.derivatives == element::Derivatives::All) {
     // About the centre of mass its own motion does not count.
-    result = shell_to_partials(shell::mass_integral(part.mesh, part.sections,
-                                                    {.square = across}, from));
+    result =
+        shell_to_partials(part, shell::mass_integral(part.mesh, part.sections,
+                                                     {.square = across}, from));
     result.by_direction = -2.0 / length * across * moments.second * unit;
     if (task.response.point) {
       result.by_point = -2.0 * across * moments.first;
@@ -152,29 +159,35 @@ ResponsePartials shell_peak_stress(const ResponseTask& task) {
   }
   const shells::ShellPart& part = *task.fields.shell;
   ResponsePartials result;
-  result.value =
-      shells::shell_peak(
-          part, shells::shell_stresses(
-                    part, static_cast<std::size_t>(task.response.load_case)))
-          .von_mises;
+  result.value = shells::shell_peak(
+                     part, static_cast<std::size_t>(task.response.load_case))
+                     .von_mises;
   return result;
 }
 
-ResponsePartials shell_stress_norm(const ResponseTask& task) {
+ResponsePartials shell_stress_mean(const ResponseTask& task) {
   const shells::ShellPart& part = *task.fields.shell;
+  const case_data::ResponseEntry& response = task.response;
   const shells::ShellCase& own =
-      part.cases[static_cast<std::size_t>(task.response.load_case)];
+      part.cases[static_cast<std::size_t>(response.load_case)];
+  const auto derivatives = task.derivatives == element::Derivatives::All
+                               ? shell::NormDerivatives::All
+                               : shell::NormDerivatives::None;
   shell::StressNorm norm =
-      shell::von_mises_norm(part.mesh, part.sections, own.actions.loads,
-                            own.displacement, task.response.power,
-                            task.derivatives == element::Derivatives::All
-                                ? shell::NormDerivatives::All
-                                : shell::NormDerivatives::None);
+      response.kind == case_data::ResponseKind::VonMisesNorm
+          ? shell::von_mises_norm(part.mesh, part.sections, own.actions.loads,
+                                  own.displacement, response.power, derivatives)
+          : shell::von_mises_ks(
+                part.mesh, part.sections, own.actions.loads, own.displacement,
+                {.sharpness = response.sharpness,
+                 .scale = ks_scale(response, task.fields.inputs.materials)},
+                derivatives);
   ResponsePartials result;
   result.value = norm.value;
   result.by_nodes = std::move(norm.by_nodes);
   result.by_thickness = std::move(norm.by_thickness);
-  result.cases.push_back({.load_case = task.response.load_case,
+  add_layers(part, norm.by_ply, result);
+  result.cases.push_back({.load_case = response.load_case,
                           .by_displacement = std::move(norm.by_displacement),
                           .by_forces = {},
                           .by_temperature = {}});
@@ -195,14 +208,14 @@ ResponsePartials shell_modal(const ResponseTask& task) {
       shell::ModeWork work = shell::factor_functional(
           part.mesh, part.sections, own.actions.loads, own.displacement, modes);
       VectorX by_displacement = std::move(work.by_displacement);
-      result = shell_to_partials(std::move(work));
+      result = shell_to_partials(part, std::move(work));
       result.cases.push_back({.load_case = found.load_case,
                               .by_displacement = std::move(by_displacement),
                               .by_forces = {},
                               .by_temperature = {}});
     } else {
       result = shell_to_partials(
-          shell::frequency_functional(part.mesh, part.sections, modes));
+          part, shell::frequency_functional(part.mesh, part.sections, modes));
     }
   }
   result.value = sum.value;
@@ -210,6 +223,16 @@ ResponsePartials shell_modal(const ResponseTask& task) {
 }
 
 }  // namespace
+
+ResponsePartials shell_to_partials(const shells::ShellPart& part,
+                                   shell::ShellGradient gradient) {
+  ResponsePartials result;
+  add_layers(part, gradient.by_ply, result);
+  result.value = gradient.value;
+  result.by_nodes = std::move(gradient.by_nodes);
+  result.by_thickness = std::move(gradient.by_thickness);
+  return result;
+}
 
 std::optional<ResponsePartials> shell_partials(const ResponseTask& task) {
   using Kind = case_data::ResponseKind;
@@ -222,7 +245,8 @@ std::optional<ResponsePartials> shell_partials(const ResponseTask& task) {
     case Kind::Frequency:
       return shell_modal(task);
     case Kind::Mass:
-      return shell_to_partials(shell::shell_mass(part.mesh, part.sections));
+      return shell_to_partials(part,
+                               shell::shell_mass(part.mesh, part.sections));
     case Kind::Volume:
       return shell_volume(part);
     case Kind::CentreOfMass:
@@ -232,7 +256,8 @@ std::optional<ResponsePartials> shell_partials(const ResponseTask& task) {
     case Kind::MaxVonMises:
       return shell_peak_stress(task);
     case Kind::VonMisesNorm:
-      return shell_stress_norm(task);
+    case Kind::VonMisesKs:
+      return shell_stress_mean(task);
     case Kind::MeanDisplacement:
       if (part.rims.contains(task.response.surface)) {
         return mean_on_rim(task);

@@ -3,6 +3,7 @@
 
 #include "fea/functionals/nodal_peak.h"
 #include "fea/functionals/stress_criteria.h"
+#include "fea/shell_peaks/shell_peak_bound.h"
 #include "pipeline/responses/response_partials.h"
 
 namespace meniscus::responses {
@@ -31,12 +32,40 @@ ResponsePartials peak_partials(functionals::NodalPeak peak,
   return result;
 }
 
+ResponsePartials shell_peak_partials(
+    const ResponseTask& task, const std::vector<int>& load_cases,
+    const functionals::NodeCriterion& criterion) {
+  const shells::ShellPart& part = *task.fields.shell;
+  std::vector<shell::ShellState> states;
+  states.reserve(load_cases.size());
+  for (const int c : load_cases) {
+    const shells::ShellCase& own = part.cases[static_cast<std::size_t>(c)];
+    states.push_back({own.actions.loads, own.displacement});
+  }
+  shell::ShellPeakBound bound = shell::shell_peak_bound(
+      {part.mesh, part.sections, part.skin.face_label, std::move(states),
+       task.response.excess, task.derivatives},
+      criterion);
+  std::vector<VectorX> by_displacement = std::move(bound.by_displacement);
+  ResponsePartials result = shell_to_partials(part, std::move(bound));
+  for (std::size_t s = 0; s < by_displacement.size(); ++s) {
+    result.cases.push_back({.load_case = load_cases[s],
+                            .by_displacement = std::move(by_displacement[s]),
+                            .by_forces = {},
+                            .by_temperature = {}});
+  }
+  return result;
+}
+
 }  // namespace
 
 ResponsePartials nodal_peak_partials(
     const ResponseTask& task, const std::vector<int>& load_cases,
     const functionals::NodeCriterion& criterion) {
   const ResponseContext& fields = task.fields;
+  if (fields.shell != nullptr) {
+    return shell_peak_partials(task, load_cases, criterion);
+  }
   std::vector<functionals::StressState> states;
   states.reserve(load_cases.size());
   for (const int c : load_cases) {

@@ -22,21 +22,6 @@ namespace {
 
 constexpr double kNothing = 1e-12;  // a coefficient that rounding left
 
-io::DeckMaterial material_of(const element::Material& m) {
-  io::DeckMaterial result{.name = m.name,
-                          .youngs_modulus = m.youngs_modulus,
-                          .poisson_ratio = m.poisson_ratio,
-                          .density = m.density};
-  result.thermal_expansion = m.thermal_expansion;
-  if (m.orthotropic) {
-    const element::Orthotropic& o = *m.orthotropic;
-    result.orthotropic =
-        io::DeckOrthotropic{o.youngs_moduli, o.poisson_ratios, o.shear_moduli,
-                            o.axes.first, o.axes.second};
-  }
-  return result;
-}
-
 bool along_axes(const loads::LoadCase& load_case) {
   return load_case.held_nodes.empty() && load_case.pins.empty() &&
          std::all_of(load_case.supports.begin(), load_case.supports.end(),
@@ -277,12 +262,27 @@ void add_pins(const loads::LoadCase& load_case, const TetMesh& mesh,
 
 }  // namespace
 
+io::DeckMaterial deck_material_of(const element::Material& m) {
+  io::DeckMaterial result{.name = m.name,
+                          .youngs_modulus = m.youngs_modulus,
+                          .poisson_ratio = m.poisson_ratio,
+                          .density = m.density};
+  result.thermal_expansion = m.thermal_expansion;
+  if (m.orthotropic) {
+    const element::Orthotropic& o = *m.orthotropic;
+    result.orthotropic =
+        io::DeckOrthotropic{o.youngs_moduli, o.poisson_ratios, o.shear_moduli,
+                            o.axes.first, o.axes.second};
+  }
+  return result;
+}
+
 io::CalculixDeck calculix_deck_of(
     const std::vector<element::Material>& materials,
     const std::vector<loads::LoadCase>& load_cases, const TetMesh& mesh) {
   io::CalculixDeck deck;
   for (const element::Material& m : materials) {
-    deck.materials.push_back(material_of(m));
+    deck.materials.push_back(deck_material_of(m));
   }
   deck.pins = pins_of(load_cases, mesh);
   for (const loads::LoadCase& load_case : load_cases) {

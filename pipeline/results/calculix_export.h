@@ -9,6 +9,8 @@
 
 namespace meniscus::results {
 
+io::DeckMaterial deck_material_of(const element::Material& material);
+
 /// The deck of a mesh: materials, one step per load case. Numbers that CalculiX
 /// has a card for go there (*DLOAD pressure, gravity, spin; *TEMPERATURE),
 /// other loads become nodal forces; oblique supports become equations, beds of

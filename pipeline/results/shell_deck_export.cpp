@@ -7,6 +7,7 @@
 
 #include "fea/element/local_axes.h"
 #include "fea/shell/shell_loads.h"
+#include "pipeline/results/calculix_export.h"
 #include "pipeline/shells/shell_model.h"
 
 namespace meniscus::results {
@@ -92,6 +93,23 @@ shell_deck::DeckShellStep shell_step_of(const shells::ShellPart& part,
   return step;
 }
 
+shell_deck::DeckShellSection section_of(const std::string& name,
+                                        const shell::Section& section) {
+  shell_deck::DeckShellSection result{.name = name,
+                                      .plies = {},
+                                      .offset = section.offset,
+                                      .direction = section.direction};
+  double whole = 0.0;
+  for (const shell::Ply& ply : section.laminate.plies) {
+    whole += ply.share;
+  }
+  for (const shell::Ply& ply : section.laminate.plies) {
+    result.plies.push_back(
+        {deck_material_of(ply.material), ply.share / whole, ply.angle});
+  }
+  return result;
+}
+
 }  // namespace
 
 shell_deck::ShellDeck shell_deck_of(const case_data::Case& input,
@@ -107,15 +125,7 @@ shell_deck::ShellDeck shell_deck_of(const case_data::Case& input,
     deck.thickness.push_back(shell::facet_thicknesses(part.mesh, f));
   }
   for (std::size_t s = 0; s < input.shells.size(); ++s) {
-    const element::Material& material = inputs.materials[s];
-    deck.sections.push_back(
-        {.name = input.shells[s].name,
-         .material = {.name = material.name,
-                      .youngs_modulus = material.youngs_modulus,
-                      .poisson_ratio = material.poisson_ratio,
-                      .density = material.density,
-                      .thermal_expansion = material.thermal_expansion},
-         .offset = part.sections[s].offset});
+    deck.sections.push_back(section_of(input.shells[s].name, part.sections[s]));
   }
   // Of a load from any direction, which shells refuse, there are more.
   for (std::size_t k = 0; k < input.load_cases.size(); ++k) {

@@ -97,6 +97,11 @@ std::string at_text(const ThicknessAt& at, const UnitSystem& units) {
                      units.length, at.place.x(), at.place.y(), at.place.z());
 }
 
+bool is_orthotropic(const case_data::Case& input, int material) {
+  return input.materials[static_cast<std::size_t>(material)]
+      .orthotropic.has_value();
+}
+
 /// Could its walls be shells as they stand?
 bool shells_can(const case_data::Case& input) {
   case_data::Case other = input;
@@ -105,12 +110,32 @@ bool shells_can(const case_data::Case& input) {
     if (wall.material == case_data::kVoid) {
       return false;  // nothing is analysed
     }
-    other.shells.push_back({wall.name, wall.films, wall.thickness, wall.side,
-                            wall.material, wall.line});
+    if (is_orthotropic(input, wall.material)) {
+      return false;  // axes of solids stay as they are, those of shells turn
+                     // with the film
+    }
+    other.shells.push_back({.name = wall.name,
+                            .films = wall.films,
+                            .thickness = wall.thickness,
+                            .side = wall.side,
+                            .layers = {{.material = wall.material}},
+                            .line = wall.line});
   }
   case_data::CaseProblems problems(input.path, {});
   check_shells(other, problems);
   return problems.empty();
+}
+
+/// What says more of a shell that is thicker than a fifth of its radius.
+std::string better_than(const case_data::Case& input,
+                        const case_data::ShellEntry& shell) {
+  if (shell.layers.size() == 1 &&
+      !is_orthotropic(input, shell.layers.front().material)) {
+    return fmt::format("above a fifth [walls.{}], as a solid, says more",
+                       shell.name);
+  }
+  return "above a fifth what is left out of shells counts, and solids have no "
+         "layers along a film: take a thinner one";
 }
 
 /// The smallest radius of a film's curves, where it is not flat.
@@ -288,11 +313,11 @@ std::vector<std::string> thick_shell_advice(
       if (at && at->value > kThick * least.radius) {
         advice.push_back(fmt::format(
             "{}: shells.{} is {}, where curve '{}' bends with a radius of "
-            "{:.4g} {}: {:.2g} of it, if film '{}' bends along; above a fifth "
-            "[walls.{}], as a solid, says more",
+            "{:.4g} {}: {:.2g} of it, if film '{}' bends along; {}",
             case_data::place(input, shell.line), shell.name,
             at_text(*at, input.units), least.curve, least.radius,
-            input.units.length, at->value / least.radius, film, shell.name));
+            input.units.length, at->value / least.radius, film,
+            better_than(input, shell)));
       }
     }
   }
@@ -308,11 +333,11 @@ std::vector<std::string> thick_shell_warnings(const case_data::Case& input,
     if (most.share > kThick) {
       warnings.push_back(fmt::format(
           "shells.{} is {}, where its film bends with a radius of {:.4g} {}: "
-          "{:.2g} of it; above a fifth [walls.{}], as a solid, says more",
+          "{:.2g} of it; {}",
           input.shells[s].name,
           at_text({most.thickness, most.place}, input.units),
           most.thickness / most.share, input.units.length, most.share,
-          input.shells[s].name));
+          better_than(input, input.shells[s])));
     }
   }
   return warnings;

@@ -17,10 +17,11 @@ namespace {
 const std::vector<case_data::ResponseKind>& kinds_of_shells() {
   using K = case_data::ResponseKind;
   static const std::vector<case_data::ResponseKind> kinds = {
-      K::MeanDisplacement, K::DisplacementNorm, K::Rotation,  K::Compliance,
-      K::StrainEnergy,     K::BucklingFactor,   K::Frequency, K::Mass,
-      K::Volume,           K::CentreOfMass,     K::Inertia,   K::MaxVonMises,
-      K::VonMisesNorm,     K::Envelope,         K::Expression};
+      K::MeanDisplacement, K::DisplacementNorm, K::Rotation,    K::Compliance,
+      K::StrainEnergy,     K::BucklingFactor,   K::Frequency,   K::Mass,
+      K::Volume,           K::CentreOfMass,     K::Inertia,     K::MaxVonMises,
+      K::VonMisesNorm,     K::VonMisesKs,       K::StressRatio, K::Fatigue,
+      K::Envelope,         K::Expression};
   return kinds;
 }
 
@@ -39,7 +40,6 @@ class ShellChecks {
 
   void check() {
     check_part();
-    check_materials();
     for (const case_data::LoadCaseEntry& load_case : input_.load_cases) {
       check_supports(load_case);
       for (const case_data::LoadEntry& load : load_case.loads) {
@@ -53,7 +53,8 @@ class ShellChecks {
   }
 
  private:
-  bool follows_design(const case_data::QuantityVector& numbers) const {
+  template <class Numbers>
+  bool follows_design(const Numbers& numbers) const {
     std::vector<std::string> found;
     return case_data::CaseValues(input_, case_data::initial_design(input_),
                                  found)
@@ -105,29 +106,6 @@ class ShellChecks {
                                 "none; take it out, and bound the thickness "
                                 "itself",
                                 first.name));
-    }
-  }
-
-  void check_materials() {
-    std::vector<std::string> found;
-    const case_data::CaseValues values(
-        input_, case_data::initial_design(input_), found);
-    for (const case_data::ShellEntry& shell : input_.shells) {
-      const case_data::MaterialEntry& material =
-          input_.materials[static_cast<std::size_t>(shell.material)];
-      if (material.orthotropic) {
-        problems_.add(shell.line,
-                      fmt::format("shells.{} is of '{}', which is orthotropic; "
-                                  "shells take isotropic materials",
-                                  shell.name, material.name));
-      } else if (values.follows_design(material.density) ||
-                 values.follows_design(material.youngs_modulus)) {
-        problems_.add(
-            material.line,
-            fmt::format("'{}' follows the design, which materials of shells "
-                        "cannot yet; let the thickness follow it",
-                        material.name));
-      }
     }
   }
 
@@ -207,17 +185,7 @@ class ShellChecks {
       case case_data::LoadKind::Preload:
         refuse("a bolt", "give its force to a film or a rim");
         break;
-      case case_data::LoadKind::Spin: {
-        std::vector<std::string> found;
-        const case_data::CaseValues values(
-            input_, case_data::initial_design(input_), found);
-        if (values.follows_design(load.number) ||
-            values.follows_design(load.vector) ||
-            values.follows_design(load.at)) {
-          refuse("a spin that follows the design", "give it fixed numbers");
-        }
-        break;
-      }
+      case case_data::LoadKind::Spin:
       case case_data::LoadKind::Gravity:
         break;
     }
@@ -245,11 +213,10 @@ class ShellChecks {
                     fmt::format("responses.{} is on a rim, where shells have "
                                 "mean_displacement without weight; name a film",
                                 response.name));
-    } else if (response.kind == case_data::ResponseKind::VonMisesNorm ||
-               response.kind == case_data::ResponseKind::BucklingFactor) {
-      check_stress_by_loads(response);
     } else if (response.kind == case_data::ResponseKind::StrainEnergy) {
       check_energy_of_loads(response);
+    } else {
+      check_stress_by_loads(response);
     }
   }
 
@@ -268,33 +235,50 @@ class ShellChecks {
     }
   }
 
-  /// Pressures, temperatures and weight stress a wall beside what they move it
-  /// by.
+  /// What loads change stresses by beside what they move a wall by.
   void check_stress_by_loads(const case_data::ResponseEntry& response) {
-    std::vector<std::string> found;
-    const case_data::CaseValues values(
-        input_, case_data::initial_design(input_), found);
-    const case_data::LoadCaseEntry& load_case =
-        input_.load_cases[static_cast<std::size_t>(response.load_case)];
-    for (const case_data::LoadEntry& load : load_case.loads) {
-      const bool pressed = load.kind == case_data::LoadKind::Pressure &&
-                           !is_rim(load.surfaces.front()) &&
-                           values.follows_design(load.place.quantity);
-      const bool heated = load.kind == case_data::LoadKind::Temperature &&
-                          (values.follows_design(load.place.quantity) ||
-                           values.follows_design(load.number));
-      if (pressed || heated ||
-          (load.kind == case_data::LoadKind::Gravity &&
-           values.follows_design(load.vector))) {
+    using K = case_data::ResponseKind;
+    if (response.kind == K::Fatigue) {
+      for (const int load_case : response.load_cases) {
+        check_stress_by_loads(response, load_case);
+      }
+    } else if (response.kind == K::VonMisesNorm ||
+               response.kind == K::VonMisesKs ||
+               response.kind == K::StressRatio ||
+               response.kind == K::BucklingFactor) {
+      check_stress_by_loads(response, response.load_case);
+    }
+  }
+
+  void check_stress_by_loads(const case_data::ResponseEntry& response,
+                             int load_case) {
+    const case_data::LoadCaseEntry& of =
+        input_.load_cases[static_cast<std::size_t>(load_case)];
+    for (const case_data::LoadEntry& load : of.loads) {
+      const char* follows = nullptr;
+      if (load.kind == case_data::LoadKind::Pressure &&
+          !is_rim(load.surfaces.front()) &&
+          follows_design(load.place.quantity)) {
+        follows = "pressure";
+      } else if (load.kind == case_data::LoadKind::Temperature &&
+                 (follows_design(load.place.quantity) ||
+                  follows_design(load.number))) {
+        follows = "temperature";
+      } else if (load.kind == case_data::LoadKind::Gravity &&
+                 follows_design(load.vector)) {
+        follows = "gravity";
+      } else if (load.kind == case_data::LoadKind::Spin &&
+                 (follows_design(load.number) || follows_design(load.vector) ||
+                  follows_design(load.at))) {
+        follows = "spin";
+      }
+      if (follows != nullptr) {
         problems_.add(
             response.line,
             fmt::format("responses.{} is of load case '{}', whose {} follows "
                         "the design, which {} of shells cannot yet; give it "
                         "a fixed number",
-                        response.name, load_case.name,
-                        pressed  ? "pressure"
-                        : heated ? "temperature"
-                                 : "gravity",
+                        response.name, of.name, follows,
                         case_data::row_of(response.kind).name));
       }
     }

@@ -162,6 +162,11 @@ ShellModel::ShellModel(const case_data::Case& input,
     keys_.push_back(fmt::format("{}: shells.{}.thickness",
                                 case_data::place(input, entry.line),
                                 entry.name));
+    std::vector<double>& shares = shares_.emplace_back();
+    for (const case_data::LayerEntry& layer : entry.layers) {
+      shares.push_back(layer.share);
+    }
+    directions_.push_back(entry.direction);
   }
   rims_ = rims_of(films, nodes_);
   for (const walls::WallPlane& plane : films.planes.planes) {
@@ -208,10 +213,20 @@ std::shared_ptr<ShellPart> ShellModel::part(
                        reference_[nodes_.mesh.facets[f][k]]);
     }
   }
+  std::size_t layer = 0;
   for (std::size_t s = 0; s < inputs.shells.size(); ++s) {
-    part->sections.push_back(
-        {.laminate = {.plies = {{.material = inputs.materials[s]}}},
-         .offset = offset_of(inputs.shells[s].side)});
+    shell::Section& section = part->sections.emplace_back();
+    section.offset = offset_of(inputs.shells[s].side);
+    for (const double share : shares_[s]) {
+      const element::Material& material = inputs.materials[layer];
+      section.laminate.plies.push_back(
+          {material, share, inputs.layer_angles[layer]});
+      if (material.orthotropic && !section.direction) {
+        section.direction =
+            directions_[s].value_or(material.orthotropic->axes.first);
+      }
+      ++layer;
+    }
   }
   shell::check_shell(part->mesh, part->sections);
   part->skin = skin_of(surface, part->mesh);

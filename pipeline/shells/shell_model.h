@@ -3,6 +3,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -47,8 +48,10 @@ class ShellModel {
   Points reference_;                         // per corner, of the frozen film
   std::vector<walls::WallSpec> specs_;       // thicknesses have their shapes
   std::vector<std::string> keys_;            // of thicknesses, for messages
-  std::map<std::string, shell::Line> rims_;  // as ShellPart has them
-  std::map<std::string, Vec3> planes_;       // the same
+  std::vector<std::vector<double>> shares_;  // per shell, of its layers
+  std::vector<std::optional<Vec3>> directions_;  // as the case gives them
+  std::map<std::string, shell::Line> rims_;      // as ShellPart has them
+  std::map<std::string, Vec3> planes_;           // the same
 };
 
 /// What holds the nodes of the part. Throws InvalidInput for a rim of no edge.

@@ -225,8 +225,11 @@ shell::ShellGradient work_gradient(const ShellPart& part, std::size_t load_case,
 
 double work_rate(const ShellPart& part, const loads::LoadCase& load_case,
                  const loads::LoadCase& rates, const VectorX& v) {
-  double rate = v.dot(shell::nodal_forces(part.mesh, part.sections,
-                                          facet_loads_of(part, rates)));
+  shell::ShellLoads own = facet_loads_of(part, rates);
+  if (load_case.spin) {
+    own.mass_force = shell::mass_force_rate(*load_case.spin, *rates.spin);
+  }
+  double rate = v.dot(shell::nodal_forces(part.mesh, part.sections, own));
   const loads::LoadCase films = on_films(load_case);
   if (acts_on_films(films)) {
     rate += loads::load_rate(
@@ -253,22 +256,69 @@ std::vector<shell::FacetStress> shell_stresses(const ShellPart& part,
                                      own.actions.loads, own.displacement));
 }
 
-ShellPeak shell_peak(const ShellPart& part,
-                     const std::vector<shell::FacetStress>& stress) {
-  ShellPeak peak;
-  for (std::size_t f = 0; f < stress.size(); ++f) {
-    for (std::size_t i = 0; i < stress[f].size(); ++i) {
-      const shell::WallStress& wall = stress[f][i];
-      for (const element::Stress& s :
-           {wall.negative, wall.middle, wall.positive}) {
-        if (const double value = element::von_mises(s);
-            value > peak.von_mises) {
-          peak = {value, part.mesh.nodes[part.mesh.facets[f][i]],
-                  static_cast<int>(f)};
-        }
-      }
+std::vector<int> first_layers(const std::vector<shell::Section>& sections) {
+  std::vector<int> first;
+  int next = 0;
+  for (const shell::Section& section : sections) {
+    first.push_back(next);
+    next += static_cast<int>(section.laminate.plies.size());
+  }
+  return first;
+}
+
+LayerGradient layer_gradient(const ShellPart& part,
+                             const shell::PlyGradients& by_ply) {
+  LayerGradient result;
+  for (std::size_t s = 0; s < part.sections.size(); ++s) {
+    for (std::size_t p = 0; p < part.sections[s].laminate.plies.size(); ++p) {
+      const shell::PlyGradient own = s < by_ply.size() && p < by_ply[s].size()
+                                         ? by_ply[s][p]
+                                         : shell::PlyGradient{};
+      result.modulus.push_back(own.modulus);
+      result.density.push_back(own.density);
+      result.angle.push_back(own.angle);
     }
   }
+  return result;
+}
+
+void visit_nodal_stresses(
+    const ShellPart& part, std::size_t load_case,
+    const std::function<void(int facet, int node, int layer,
+                             const element::Stress& stress)>& visit) {
+  const ShellCase& own = part.cases[load_case];
+  const std::vector<int> first = first_layers(part.sections);
+  shell::visit_ply_stresses(
+      part.mesh, part.sections, own.actions.loads, own.displacement,
+      [&](int ply, const std::vector<shell::FacetStress>& stress) {
+        const auto mean = shell::averaged_stress(part.mesh, stress);
+        for (std::size_t f = 0; f < mean.size(); ++f) {
+          const int s = part.mesh.section[f];
+          if (ply >= std::ssize(part.sections[s].laminate.plies)) {
+            continue;
+          }
+          for (std::size_t i = 0; i < mean[f].size(); ++i) {
+            const shell::WallStress& wall = mean[f][i];
+            for (const element::Stress& at :
+                 {wall.negative, wall.middle, wall.positive}) {
+              visit(static_cast<int>(f), static_cast<int>(i), first[s] + ply,
+                    at);
+            }
+          }
+        }
+      });
+}
+
+ShellPeak shell_peak(const ShellPart& part, std::size_t load_case) {
+  ShellPeak peak;
+  visit_nodal_stresses(
+      part, load_case,
+      [&](int facet, int node, int layer, const element::Stress& stress) {
+        if (const double value = element::von_mises(stress);
+            value > peak.von_mises) {
+          peak = {value, part.mesh.nodes[part.mesh.facets[facet][node]], layer};
+        }
+      });
   return peak;
 }
 

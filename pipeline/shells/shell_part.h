@@ -1,6 +1,7 @@
 /// A design's films as a shell: what is solved, and what that gave.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -42,7 +43,8 @@ struct ShellPart {
   TetMesh skin;   // no elements: its nodes, and its facets as faces with the
                   // films' names
   Points frozen;  // places of the corners, its first nodes, at the freeze
-  std::vector<shell::Section> sections;     // one per shell of the case
+  std::vector<shell::Section> sections;     // one per shell of the case, of its
+                                            // layers
   std::map<std::string, shell::Line> rims;  // "FILM/rim:CURVE", and those in
                                             // planes: "FILM/symmetry_1"
   std::map<std::string, Vec3> planes;       // of these: the unit normals
@@ -81,14 +83,31 @@ double work_rate(const ShellPart& part, const loads::LoadCase& load_case,
 std::vector<shell::FacetStress> shell_stresses(const ShellPart& part,
                                                std::size_t load_case);
 
-/// The largest von Mises stress at the nodes, of both faces and the middle.
+/// Index of each section's first layer among those of all.
+std::vector<int> first_layers(const std::vector<shell::Section>& sections);
+
+/// Per layer, as shell::PlyGradient.
+struct LayerGradient {
+  std::vector<double> modulus, density, angle;
+};
+LayerGradient layer_gradient(const ShellPart& part,
+                             const shell::PlyGradients& by_ply);
+
+/// visit(facet, node, layer, stress) of a solved load case at the nodes of all
+/// facets, means as of shell_stresses(): at both faces of each layer and half
+/// way between, `node` from 0 to 5, `layer` among those of all sections.
+void visit_nodal_stresses(
+    const ShellPart& part, std::size_t load_case,
+    const std::function<void(int facet, int node, int layer,
+                             const element::Stress& stress)>& visit);
+
+/// The largest von Mises stress of these.
 struct ShellPeak {
   double von_mises = 0.0;        // [pressure]
   Vec3 position = Vec3::Zero();  // of the node [length]
-  int facet = 0;
+  int layer = 0;
 };
-ShellPeak shell_peak(const ShellPart& part,
-                     const std::vector<shell::FacetStress>& stress);
+ShellPeak shell_peak(const ShellPart& part, std::size_t load_case);
 
 /// Of a load case with stresses, per node: the largest that its facets have at
 /// these heights [pressure].

@@ -25,7 +25,7 @@ ShellDeck square() {
   deck.section = {0, 1};
   deck.thickness = {{1, 1, 1, 1, 1, 1}, {1, 1, 1, 1, 1, 1}};
   const io::DeckMaterial steel{"steel", 210e3, 0.3, 7.85e-9};
-  deck.sections = {{"one", steel, 0.0}, {"two", steel, 0.5}};
+  deck.sections = {{"one", {{steel}}, 0.0}, {"two", {{steel}}, 0.5}};
   deck.sets = {{"plate/rim:root", {0, 2, 6}}};
   deck.steps = {{"pull", {{{0, 2, 6}, {true, true, true}}}}};
   deck.steps[0].nodal_forces = VectorX::Zero(54);
@@ -138,6 +138,30 @@ TEST(ShellDeckTest, WhatDoesNotFitIsNamed) {
   deck = square();
   deck.steps[0].supports.clear();
   EXPECT_THAT(error_of(deck), HasSubstr("'pull' of the deck has no support"));
+}
+
+/// By the quick reference: PCOMP has PID, Z0 and a MID, T, THETA, SOUT each
+/// ply; MAT8 E1, E2, NU12, G12, G1Z, G2Z.
+TEST(ShellDeck, LayersAreThoseOfNastran) {
+  ShellDeck deck = square();
+  io::DeckMaterial carbon{"carbon"};
+  carbon.orthotropic = io::DeckOrthotropic{
+      {135e3, 10e3, 9e3}, {0.3, 0.31, 0.45}, {5e3, 4e3, 3e3}};
+  deck.sections[1].plies = {{carbon, 0.25, 0.5},
+                            {deck.sections[0].plies[0].material, 0.75}};
+  deck.sections[1].direction = Vec3(0.0, 2.0, 0.0);
+  const std::string text = nastran_shell_bdf(deck);
+  EXPECT_THAT(text, HasSubstr("PCOMP"));
+  EXPECT_THAT(text, HasSubstr("MAT8"));
+  EXPECT_THAT(text, HasSubstr("28.6478"));  // 0.5 rad
+  EXPECT_THAT(error_of(deck), HasSubstr("'two' is orthotropic or of layers"));
+  deck.thickness[1] = {1, 2, 1, 1, 1, 1};
+  EXPECT_THROW(nastran_shell_bdf(deck), InvalidInput);
+  deck = square();
+  deck.sections[1].plies[0].material = carbon;
+  EXPECT_THAT(error_of(deck), HasSubstr("no direction"));
+  deck.sections[1].plies.clear();
+  EXPECT_THAT(error_of(deck), HasSubstr("has no ply"));
 }
 
 }  // namespace

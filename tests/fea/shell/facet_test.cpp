@@ -304,8 +304,7 @@ TEST(ShellFacet, EnergyIsThatOfTheStrains) {
       const Eigen::Vector2d across(e.across[0], e.across[1]);
       const PlyLaw& ply = law.plies[point.ply];
       wall += point.weight * t * determinant(shift) *
-              (plane.dot(ply.plane * plane) +
-               law.shear_correction * across.dot(ply.across * across));
+              (plane.dot(ply.plane * plane) + across.dot(law.across * across));
     }
     energy += p.weight * frame.area * wall;
   }
