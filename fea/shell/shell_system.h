@@ -10,6 +10,7 @@
 #include "fea/shell/shell_factor.h"
 #include "fea/shell/shell_loads.h"
 #include "fea/shell/shell_mesh.h"
+#include "fea/shell/shell_stiffness.h"
 #include "fea/shell/shell_supports.h"
 
 namespace meniscus::shell {
@@ -52,13 +53,10 @@ class ShellSystem {
                          const VectorX& displacement) const;
 
  private:
-  FacetMatrix stiffness_of(int facet) const;
-  VectorX stiffness_times(const VectorX& u) const;
-
   const ShellMesh& mesh_;
   const std::vector<Section>& sections_;
   const FacetRule& rule_;
-  std::vector<LaminateLaw> laws_;
+  ShellStiffness stiffness_;
   ShellFreedom freedom_;
   ShellAssembly assembly_;
   std::optional<ShellFactor> factor_;

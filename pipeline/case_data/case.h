@@ -80,8 +80,11 @@ struct Case {
 
 /// The bodies that are not void, in order: the regions of the mesh. Without
 /// such bodies the walls that have a material, one for each set of walls that
-/// meet, named after its first; without these the shells.
+/// meet, named after its first. Behind them the shells, which are no regions.
 std::vector<BodyEntry> solid_bodies(const Case& input);
+
+/// Some body is not void.
+bool has_solids(const Case& input);
 
 /// What a response depends on beside fields.
 struct ResponseInputs {

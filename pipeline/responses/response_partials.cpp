@@ -387,17 +387,9 @@ ResponsePartials scan_distance(const ResponseTask& task) {
                     task.response.measure, points.size()));
 }
 
-/// Of the part that the case draws.
-ResponsePartials of_drawn_part(const ResponseTask& task) {
+/// As solids have it, and shells what has to do with faces and films alone.
+ResponsePartials of_solids(const ResponseTask& task) {
   using Kind = case_data::ResponseKind;
-  if (task.response.worst_in) {
-    return worst_partials(task);
-  }
-  if (task.fields.shell != nullptr) {
-    if (std::optional<ResponsePartials> own = shell_partials(task)) {
-      return *std::move(own);
-    }
-  }
   switch (task.response.kind) {
     case Kind::MeanDisplacement:
       return mean_displacement(task);
@@ -462,6 +454,32 @@ ResponsePartials of_drawn_part(const ResponseTask& task) {
       break;  // of the responses above it
   }
   return {};
+}
+
+/// Adds a response of the mesh alone.
+void add_of_mesh(const ResponsePartials& more, ResponsePartials& sum) {
+  sum.value += more.value;
+  std::transform(sum.by_nodes.begin(), sum.by_nodes.end(),
+                 more.by_nodes.begin(), sum.by_nodes.begin(), std::plus<>());
+}
+
+/// Of the part that the case draws.
+ResponsePartials of_drawn_part(const ResponseTask& task) {
+  using Kind = case_data::ResponseKind;
+  if (task.response.worst_in) {
+    return worst_partials(task);
+  }
+  const shells::ShellPart* shell = task.fields.shell;
+  std::optional<ResponsePartials> own =
+      shell != nullptr ? shell_partials(task) : std::nullopt;
+  if (!own) {
+    return of_solids(task);
+  }
+  if (shell->solid && (task.response.kind == Kind::Mass ||
+                       task.response.kind == Kind::Volume)) {
+    add_of_mesh(of_solids(task), *own);
+  }
+  return *std::move(own);
 }
 
 template <class Items>

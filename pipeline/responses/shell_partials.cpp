@@ -1,17 +1,26 @@
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "fea/shell/shell_moments.h"
 #include "fea/shell/shell_norm.h"
 #include "fea/shell_modes/shell_mode_works.h"
+#include "fea/stress/peak_stress.h"
 #include "pipeline/responses/response_partials.h"
-#include "pipeline/shells/shell_part.h"
+#include "pipeline/shells/joint_part.h"
 
 namespace meniscus::responses {
 
 namespace {
 
-ResponsePartials shell_to_partials(shell::ShellGradient gradient) {
+/// Its nodes stand behind those of solids.
+ResponsePartials shell_to_partials(const shells::ShellPart& part,
+                                   shell::ShellGradient gradient) {
   ResponsePartials result;
+  if (part.solid && gradient.by_nodes.size() == part.mesh.nodes.size()) {
+    gradient.by_nodes.insert(gradient.by_nodes.begin(),
+                             part.solid->mesh.nodes.size(), Vec3::Zero());
+  }
   result.value = gradient.value;
   result.by_nodes = std::move(gradient.by_nodes);
   result.by_thickness = std::move(gradient.by_thickness);
@@ -23,27 +32,33 @@ ResponsePartials shell_energy(const ResponseTask& task) {
   const auto load_case = static_cast<std::size_t>(task.response.load_case);
   const shells::ShellPart& part = *task.fields.shell;
   const shells::ShellCase& own = part.cases[load_case];
-  const VectorX& u = own.displacement;
+  const VectorX& u = part.solid ? own.both : own.displacement;
   const double share =
       task.response.kind == case_data::ResponseKind::StrainEnergy ? 0.5 : 1.0;
   ResponsePartials result;
   if (task.derivatives == element::Derivatives::All) {
-    result = shell_to_partials(shells::work_gradient(part, load_case, share * u,
-                                                     VectorX::Zero(u.size())));
+    result = shell_to_partials(
+        part, part.solid ? shells::joint_force_gradient(
+                               part, task.fields.inputs, load_case, share * u)
+                         : shells::work_gradient(part, load_case, share * u,
+                                                 VectorX::Zero(u.size())));
     result.cases.push_back({.load_case = task.response.load_case,
                             .by_displacement = {},
                             .self_adjoint = share,
                             .by_forces = share * u,
                             .by_temperature = {}});
   }
-  result.value = share * u.dot(shell::nodal_forces(part.mesh, part.sections,
-                                                   own.actions.loads));
+  result.value =
+      share * u.dot(part.solid ? own.forces
+                               : shell::nodal_forces(part.mesh, part.sections,
+                                                     own.actions.loads));
   return result;
 }
 
 /// The mass of a density of 1.
 ResponsePartials shell_volume(const shells::ShellPart& part) {
   return shell_to_partials(
+      part,
       shell::shell_mass(part.mesh, shells::with_density(part.sections, 1.0)));
 }
 
@@ -63,8 +78,9 @@ ResponsePartials shell_centre(const ResponseTask& task) {
   const Vec3 centre = moments.first / moments.mass;
   ResponsePartials result;
   if (task.derivatives == element::Derivatives::All) {
-    result = shell_to_partials(shell::mass_integral(
-        part.mesh, part.sections, {.linear = unit / moments.mass}, centre));
+    result = shell_to_partials(
+        part, shell::mass_integral(part.mesh, part.sections,
+                                   {.linear = unit / moments.mass}, centre));
     result.by_direction = (centre - unit.dot(centre) * unit) / length;
   }
   result.value = unit.dot(centre);
@@ -88,8 +104,9 @@ ResponsePartials shell_inertia(const ResponseTask& task) {
   ResponsePartials result;
   if (task.derivatives == element::Derivatives::All) {
     // About the centre of mass its own motion does not count.
-    result = shell_to_partials(shell::mass_integral(part.mesh, part.sections,
-                                                    {.square = across}, from));
+    result =
+        shell_to_partials(part, shell::mass_integral(part.mesh, part.sections,
+                                                     {.square = across}, from));
     result.by_direction = -2.0 / length * across * moments.second * unit;
     if (task.response.point) {
       result.by_point = -2.0 * across * moments.first;
@@ -106,8 +123,9 @@ ResponsePartials mean_on_rim(const ResponseTask& task) {
       part.mesh, shells::rim_of(part, task.response.surface),
       task.inputs.direction, part.cases[load_case].displacement);
   ResponsePartials result;
-  result.value = mean.value;
-  result.by_nodes = std::move(mean.by_nodes);
+  result = shell_to_partials(part, {.value = mean.value,
+                                    .by_nodes = std::move(mean.by_nodes),
+                                    .by_thickness = {}});
   result.by_direction = mean.by_direction;
   result.cases.push_back({.load_case = task.response.load_case,
                           .by_displacement = std::move(mean.by_displacement),
@@ -124,12 +142,17 @@ ResponsePartials shell_peak_stress(const ResponseTask& task) {
         task.response.name));
   }
   const shells::ShellPart& part = *task.fields.shell;
+  const auto load_case = static_cast<std::size_t>(task.response.load_case);
   ResponsePartials result;
   result.value =
-      shells::shell_peak(
-          part, shells::shell_stresses(
-                    part, static_cast<std::size_t>(task.response.load_case)))
+      shells::shell_peak(part, shells::shell_stresses(part, load_case))
           .von_mises;
+  if (part.solid) {
+    result.value = std::max(
+        result.value, stress::peak_of(part.solid->mesh,
+                                      shells::solid_stress(part, load_case), {})
+                          .von_mises);
+  }
   return result;
 }
 
@@ -168,14 +191,14 @@ ResponsePartials shell_modal(const ResponseTask& task) {
       shell::ModeWork work = shell::factor_functional(
           part.mesh, part.sections, own.actions.loads, own.displacement, modes);
       VectorX by_displacement = std::move(work.by_displacement);
-      result = shell_to_partials(std::move(work));
+      result = shell_to_partials(part, std::move(work));
       result.cases.push_back({.load_case = found.load_case,
                               .by_displacement = std::move(by_displacement),
                               .by_forces = {},
                               .by_temperature = {}});
     } else {
       result = shell_to_partials(
-          shell::frequency_functional(part.mesh, part.sections, modes));
+          part, shell::frequency_functional(part.mesh, part.sections, modes));
     }
   }
   result.value = sum.value;
@@ -195,7 +218,8 @@ std::optional<ResponsePartials> shell_partials(const ResponseTask& task) {
     case Kind::Frequency:
       return shell_modal(task);
     case Kind::Mass:
-      return shell_to_partials(shell::shell_mass(part.mesh, part.sections));
+      return shell_to_partials(part,
+                               shell::shell_mass(part.mesh, part.sections));
     case Kind::Volume:
       return shell_volume(part);
     case Kind::CentreOfMass:

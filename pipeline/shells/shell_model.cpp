@@ -208,9 +208,11 @@ std::shared_ptr<ShellPart> ShellModel::part(
                        reference_[nodes_.mesh.facets[f][k]]);
     }
   }
+  // Those of bodies stand before them.
+  const std::size_t first = inputs.materials.size() - inputs.shells.size();
   for (std::size_t s = 0; s < inputs.shells.size(); ++s) {
     part->sections.push_back(
-        {.laminate = {.plies = {{.material = inputs.materials[s]}}},
+        {.laminate = {.plies = {{.material = inputs.materials[first + s]}}},
          .offset = offset_of(inputs.shells[s].side)});
   }
   shell::check_shell(part->mesh, part->sections);

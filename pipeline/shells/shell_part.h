@@ -3,15 +3,19 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/geometry/tet_mesh.h"
+#include "fea/joint/edge_tie.h"
+#include "fea/joint/joint_system.h"
 #include "fea/loads/load_case.h"
 #include "fea/shell/shell_gradient.h"
 #include "fea/shell/shell_lines.h"
 #include "fea/shell/shell_stress.h"
 #include "fea/shell/shell_system.h"
+#include "fea/stress/patch_recovery.h"
 
 namespace meniscus::shells {
 
@@ -32,7 +36,19 @@ struct ShellCase {
   ShellActions actions;
   std::shared_ptr<const shell::ShellSystem> system;  // of cases held alike
   VectorX displacement;                              // 6 per node
+  // Beside solids, in the place of `system` (joint_part.h):
+  std::shared_ptr<const joint::JointSystem> joint;
+  VectorX both, forces;     // displacements and forces of solids and shells
+  VectorX solid_reactions;  // 3 per node of the solids
+  stress::RecoveredStress solid_stress;    // as `stress`
   std::vector<shell::FacetStress> stress;  // means at nodes; once, at the end
+};
+
+/// The solids that shells stand on.
+struct SolidPart {
+  TetMesh mesh;
+  std::vector<element::Material> materials;   // one per region
+  std::shared_ptr<const joint::EdgeTie> tie;  // frozen with the model
 };
 
 /// Systems refer to mesh and sections: it stays where it was made.
@@ -50,6 +66,7 @@ struct ShellPart {
   std::map<std::string, shell::Line> rims;  // "FILM/rim:CURVE", and those in
                                             // planes: "FILM/symmetry_1"
   std::map<std::string, Vec3> planes;       // of these: the unit normals
+  std::optional<SolidPart> solid;           // of a case with both
   std::vector<ShellCase> cases;             // per load case
 };
 
