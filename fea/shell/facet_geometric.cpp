@@ -119,7 +119,7 @@ FacetMatrix facet_geometric(const Facet& facet, const ShellLoads& loads,
   const Eigen::Vector2d b = bubble_rotation(whole_stiffness(facet),
                                             facet_forces(facet, loads, own), u);
   const auto axes = bubble_axes(X);
-  const Triple<double> bubble = plus(times(b[0], axes[0]), b[1], axes[1]);
+  const Triple<double> bubble = bubble_turn(axes, b);
   const FacetField field = Eigen::Map<const FacetField>(u.data());
   FacetMatrix K = FacetMatrix::Zero();
   for (const FacetPoint& p : facet_rule()) {

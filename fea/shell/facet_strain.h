@@ -245,4 +245,11 @@ std::array<Triple<T>, 2> bubble_axes(const std::array<Triple<T>, kNodes>& X) {
   return {frame.axes[0], frame.axes[1]};
 }
 
+/// A bubble's rotation by its two numbers.
+template <class T>
+Triple<T> bubble_turn(const std::array<Triple<T>, 2>& axes,
+                      const Eigen::Vector2d& numbers) {
+  return plus(times(numbers[0], axes[0]), numbers[1], axes[1]);
+}
+
 }  // namespace meniscus::shell

@@ -11,33 +11,6 @@ namespace {
 /// Facets whose matrices are held at once.
 constexpr int kBatch = 1024;
 
-/// Facets at each node, one list after the other.
-struct NodeFacets {
-  std::vector<int> start;
-  std::vector<int> facet;
-};
-
-NodeFacets node_facets(const ShellMesh& mesh) {
-  NodeFacets list;
-  list.start.assign(mesh.nodes.size() + 1, 0);
-  for (const auto& nodes : mesh.facets) {
-    for (const int node : nodes) {
-      ++list.start[node + 1];
-    }
-  }
-  for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {
-    list.start[i + 1] += list.start[i];
-  }
-  list.facet.resize(list.start.back());
-  std::vector<int> next(list.start.begin(), list.start.end() - 1);
-  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
-    for (const int node : mesh.facets[f]) {
-      list.facet[next[node]++] = static_cast<int>(f);
-    }
-  }
-  return list;
-}
-
 }  // namespace
 
 ShellAssembly::ShellAssembly(const ShellMesh& mesh, const ShellFreedom& freedom)

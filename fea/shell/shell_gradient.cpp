@@ -166,11 +166,6 @@ Taped edge_work(const std::array<Triple<Taped>, kNodes>& X,
   return sum;
 }
 
-struct FacetGradient {
-  double value = 0.0;
-  ByShape by = {};
-};
-
 /// The state equation's data and the two fields of one facet.
 struct FacetResidual {
   const Facet& facet;
@@ -197,19 +192,6 @@ FacetGradient facet_gradient(const FacetResidual& residual, Tape& tape) {
     sum = sum + p.weight * frame.area * (outer - inner);
   }
   return {sum.value, taped.transpose(sum)};
-}
-
-/// The sum of the facets, in their order.
-ShellGradient gradient_of(const ShellMesh& mesh,
-                          const std::vector<FacetGradient>& parts) {
-  ShellGradient gradient;
-  gradient.by_nodes.assign(mesh.nodes.size(), Vec3::Zero());
-  gradient.by_thickness.assign(mesh.facets.size(), Vec3::Zero());
-  for (std::size_t f = 0; f < parts.size(); ++f) {
-    gradient.value += parts[f].value;
-    add_by_shape(mesh, static_cast<int>(f), parts[f].by, gradient);
-  }
-  return gradient;
 }
 
 FacetGradient facet_mass_gradient(const Facet& facet, Tape& tape) {

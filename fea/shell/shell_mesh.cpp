@@ -89,6 +89,27 @@ std::array<double, 6> facet_thicknesses(const ShellMesh& mesh,
           0.5 * (t[2] + t[0])};
 }
 
+NodeFacets node_facets(const ShellMesh& mesh) {
+  NodeFacets list;
+  list.start.assign(mesh.nodes.size() + 1, 0);
+  for (const auto& nodes : mesh.facets) {
+    for (const int node : nodes) {
+      ++list.start[node + 1];
+    }
+  }
+  for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {
+    list.start[i + 1] += list.start[i];
+  }
+  list.facet.resize(list.start.back());
+  std::vector<int> next(list.start.begin(), list.start.end() - 1);
+  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+    for (const int node : mesh.facets[f]) {
+      list.facet[next[node]++] = static_cast<int>(f);
+    }
+  }
+  return list;
+}
+
 std::vector<LaminateLaw> laminate_laws(const std::vector<Section>& sections) {
   std::vector<LaminateLaw> laws;
   laws.reserve(sections.size());

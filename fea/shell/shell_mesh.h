@@ -39,6 +39,15 @@ ShellMesh shell_mesh(const QuadraticSurface& surface, const VectorX& thickness,
 std::array<double, 6> facet_thicknesses(const ShellMesh& mesh,
                                         std::size_t facet);
 
+/// Facets at each node: those of node n stand in `facet` from start[n] to
+/// start[n + 1], ascending.
+struct NodeFacets {
+  std::vector<int> start;
+  std::vector<int> facet;
+};
+
+NodeFacets node_facets(const ShellMesh& mesh);
+
 /// laminate_law() of each.
 std::vector<LaminateLaw> laminate_laws(const std::vector<Section>& sections);
 

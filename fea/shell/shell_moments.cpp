@@ -81,8 +81,7 @@ ShellGradient mass_integral(const ShellMesh& mesh,
                             const MassForm& form, const Vec3& from) {
   check_shell(mesh, sections);
   const std::vector<LaminateLaw> laws = laminate_laws(sections);
-  std::vector<double> values(mesh.facets.size());
-  std::vector<ByShape> parts(mesh.facets.size());
+  std::vector<FacetGradient> parts(mesh.facets.size());
   parallel_for(
       static_cast<std::ptrdiff_t>(parts.size()), [&](std::ptrdiff_t k) {
         static thread_local Tape tape;
@@ -97,17 +96,9 @@ ShellGradient mass_integral(const ShellMesh& mesh,
                                        place[2] - from[2]};
               sum = sum + mass * value_of(form, r);
             });
-        values[k] = sum.value;
-        parts[k] = taped.transpose(sum);
+        parts[k] = {sum.value, taped.transpose(sum)};
       });
-  ShellGradient gradient;
-  gradient.by_nodes.assign(mesh.nodes.size(), Vec3::Zero());
-  gradient.by_thickness.assign(mesh.facets.size(), Vec3::Zero());
-  for (std::size_t f = 0; f < parts.size(); ++f) {
-    gradient.value += values[f];
-    add_by_shape(mesh, static_cast<int>(f), parts[f], gradient);
-  }
-  return gradient;
+  return gradient_of(mesh, parts);
 }
 
 }  // namespace meniscus::shell

@@ -84,9 +84,7 @@ struct SolvedFacet {
 FaceSquares squares_of(const SolvedFacet& solved) {
   const Facet& facet = solved.facet;
   const auto X = triples(facet);
-  const auto axes = bubble_axes(X);
-  const Triple<double> bubble =
-      plus(times(solved.bubble[0], axes[0]), solved.bubble[1], axes[1]);
+  const Triple<double> bubble = bubble_turn(bubble_axes(X), solved.bubble);
   const std::array<WallFace, 2> faces = faces_of(facet, solved.state);
   FaceSquares result;
   for (int q = 0; q < 3; ++q) {
@@ -121,8 +119,7 @@ struct NormTerms {
   }
 };
 
-struct FacetNormGradient {
-  ByShape by_shape = {};
+struct FacetNormGradient : FacetGradient {
   WholeVector by_whole = WholeVector::Zero();  // with the bubble's two numbers
 };
 
@@ -168,8 +165,7 @@ void add_by_unknowns(const SolvedFacet& solved, const NormTerms& terms,
   const Facet& facet = solved.facet;
   const auto X = triples(facet);
   const auto axes = bubble_axes(X);
-  const Triple<double> bubble =
-      plus(times(solved.bubble[0], axes[0]), solved.bubble[1], axes[1]);
+  const Triple<double> bubble = bubble_turn(axes, solved.bubble);
   const std::array<WallFace, 2> faces = faces_of(facet, solved.state);
   for (const FacetPoint& p : norm_points()) {
     const FacetFrame<double> frame = facet_frame(X, p, facet.direction);
@@ -276,7 +272,7 @@ class NormOfShell {
     parallel_for(count(), [&](std::ptrdiff_t k) {
       static thread_local Tape tape;
       const SolvedFacet facet = solved(static_cast<int>(k));
-      parts[k].by_shape = norm_by_shape(facet, terms, tape);
+      parts[k].by = norm_by_shape(facet, terms, tape);
       add_by_unknowns(facet, terms, parts[k]);
       // The bubble follows the nodes: condensed as forces are.
       on_bubbles[k] = parts[k].by_whole.tail<2>();
@@ -289,7 +285,7 @@ class NormOfShell {
         residual_gradient(mesh_, sections_, loads_, none, u_, &on_bubbles);
     norm.by_displacement = none;
     for (std::size_t f = 0; f < parts.size(); ++f) {
-      add_by_shape(mesh_, static_cast<int>(f), parts[f].by_shape, state);
+      add_facet(mesh_, static_cast<int>(f), parts[f], state);
       for (int i = 0; i < kNodes; ++i) {
         const int node = mesh_.facets[f][i];
         norm.by_displacement.segment<6>(6L * node) +=

@@ -88,7 +88,7 @@ FacetStress facet_stress(const Facet& facet, const ShellLoads& loads,
                                             facet_forces(facet, loads, own), u);
   const WallState state = wall_state(loads, own);
   const auto axes = bubble_axes(X);
-  const Triple<double> bubble = plus(times(b[0], axes[0]), b[1], axes[1]);
+  const Triple<double> bubble = bubble_turn(axes, b);
   const FacetField field = Eigen::Map<const FacetField>(u.data());
   FacetStress result{};
   for (int q = 0; q < 3; ++q) {

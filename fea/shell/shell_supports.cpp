@@ -125,4 +125,28 @@ VectorX ShellFreedom::restrict(const VectorX& nodal) const {
   return f;
 }
 
+VectorX displacements_of(const VectorX& six) {
+  VectorX three(six.size() / 2);
+  for (Eigen::Index i = 0; i < three.size() / 3; ++i) {
+    three.segment<3>(3 * i) = six.segment<3>(6 * i);
+  }
+  return three;
+}
+
+VectorX rotations_of(const VectorX& six) {
+  VectorX three(six.size() / 2);
+  for (Eigen::Index i = 0; i < three.size() / 3; ++i) {
+    three.segment<3>(3 * i) = six.segment<3>(6 * i + 3);
+  }
+  return three;
+}
+
+VectorX with_rotations(const VectorX& three) {
+  VectorX six = VectorX::Zero(2 * three.size());
+  for (Eigen::Index i = 0; i < three.size() / 3; ++i) {
+    six.segment<3>(6 * i) = three.segment<3>(3 * i);
+  }
+  return six;
+}
+
 }  // namespace meniscus::shell

@@ -12,6 +12,12 @@ namespace meniscus::shell {
 
 using Six = Eigen::Matrix<double, 6, 1>;
 
+/// Displacements and rotations of 6 numbers per node, 3 each; and back, without
+/// rotations.
+VectorX displacements_of(const VectorX& six);
+VectorX rotations_of(const VectorX& six);
+VectorX with_rotations(const VectorX& three);
+
 /// Holds components of a node: displacements 1 2 3, rotations about 1 2 3,
 /// along x y z or the support's axes.
 struct NodeSupport {

@@ -20,19 +20,15 @@ struct FacetGraph {
 };
 
 FacetGraph facet_graph(const ShellMesh& mesh) {
-  std::vector<std::vector<int>> at_middle(mesh.nodes.size());
-  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
-    for (int k = 0; k < kEdges; ++k) {
-      at_middle[mesh.facets[f][kEdges + k]].push_back(static_cast<int>(f));
-    }
-  }
+  const NodeFacets at = node_facets(mesh);
   FacetGraph graph;
   graph.start.push_back(0);
   for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
     for (int k = 0; k < kEdges; ++k) {
-      for (const int other : at_middle[mesh.facets[f][kEdges + k]]) {
-        if (other != static_cast<int>(f)) {
-          graph.neighbors.push_back(other);
+      const int middle = mesh.facets[f][kEdges + k];
+      for (int i = at.start[middle]; i < at.start[middle + 1]; ++i) {
+        if (at.facet[i] != static_cast<int>(f)) {
+          graph.neighbors.push_back(at.facet[i]);
         }
       }
     }

@@ -22,7 +22,7 @@ Taped TapedFacet::thickness_at(const FacetPoint& p) const {
 }
 
 Triple<Taped> TapedFacet::bubble(const Eigen::Vector2d& numbers) const {
-  return plus(times(numbers[0], axes_[0]), numbers[1], axes_[1]);
+  return bubble_turn(axes_, numbers);
 }
 
 ByShape TapedFacet::transpose(const Taped& result) const {
@@ -32,14 +32,32 @@ ByShape TapedFacet::transpose(const Taped& result) const {
   return by;
 }
 
-void add_by_shape(const ShellMesh& mesh, int f, const ByShape& by,
-                  ShellGradient& gradient) {
+ShellGradient empty_gradient(const ShellMesh& mesh) {
+  ShellGradient gradient;
+  gradient.by_nodes.assign(mesh.nodes.size(), Vec3::Zero());
+  gradient.by_thickness.assign(mesh.facets.size(), Vec3::Zero());
+  return gradient;
+}
+
+void add_facet(const ShellMesh& mesh, int f, const FacetGradient& part,
+               ShellGradient& sum) {
+  sum.value += part.value;
   for (int i = 0; i < kNodes; ++i) {
-    gradient.by_nodes[mesh.facets[f][i]] +=
-        Vec3(by[3 * i], by[3 * i + 1], by[3 * i + 2]);
+    sum.by_nodes[mesh.facets[f][i]] +=
+        Vec3(part.by[3 * i], part.by[3 * i + 1], part.by[3 * i + 2]);
   }
   constexpr int kFirst = 3 * kNodes;
-  gradient.by_thickness[f] += Vec3(by[kFirst], by[kFirst + 1], by[kFirst + 2]);
+  sum.by_thickness[f] +=
+      Vec3(part.by[kFirst], part.by[kFirst + 1], part.by[kFirst + 2]);
+}
+
+ShellGradient gradient_of(const ShellMesh& mesh,
+                          const std::vector<FacetGradient>& parts) {
+  ShellGradient sum = empty_gradient(mesh);
+  for (std::size_t f = 0; f < parts.size(); ++f) {
+    add_facet(mesh, static_cast<int>(f), parts[f], sum);
+  }
+  return sum;
 }
 
 }  // namespace meniscus::shell

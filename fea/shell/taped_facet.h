@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include "core/math/taped.h"
 #include "fea/shell/facet_matrices.h"
@@ -31,8 +32,21 @@ struct TapedFacet {
   std::array<Triple<Taped>, 2> axes_;  // of the bubble
 };
 
-/// Adds those of facet f to its nodes' and corners'; these have their length.
-void add_by_shape(const ShellMesh& mesh, int f, const ByShape& by,
-                  ShellGradient& gradient);
+/// A facet's part of a value.
+struct FacetGradient {
+  double value = 0.0;
+  ByShape by = {};
+};
+
+/// Of no value, with its vectors' lengths.
+ShellGradient empty_gradient(const ShellMesh& mesh);
+
+/// Adds that of facet f to its nodes' and corners'.
+void add_facet(const ShellMesh& mesh, int f, const FacetGradient& part,
+               ShellGradient& sum);
+
+/// The sum of all facets, in their order.
+ShellGradient gradient_of(const ShellMesh& mesh,
+                          const std::vector<FacetGradient>& parts);
 
 }  // namespace meniscus::shell

@@ -161,7 +161,7 @@ modes::ModeStress mode_stress(const ShellMesh& mesh,
         const WallState state = wall_state(loads, own[k]);
         parts[k] = facet_sums({facet, sections[mesh.section[f]], state,
                                Eigen::Map<const FacetField>(of_u.data()),
-                               plus(times(b[0], axes[0]), b[1], axes[1]),
+                               bubble_turn(axes, b),
                                Eigen::Map<const FacetField>(of_x.data())});
       });
   WorkedSums all;

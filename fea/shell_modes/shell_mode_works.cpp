@@ -7,6 +7,7 @@
 #include "core/parallel_for.h"
 #include "fea/shell/facet_loads.h"
 #include "fea/shell/facet_second_work.h"
+#include "fea/shell/shell_assembly.h"
 #include "fea/shell/shell_supports.h"
 #include "fea/shell/taped_facet.h"
 
@@ -37,9 +38,7 @@ T work_at(const StressedFacet& at, const std::array<Triple<T>, kNodes>& X,
                      at.x);
 }
 
-struct FacetWork {
-  double value = 0.0;
-  ByShape by_shape = {};
+struct FacetWork : FacetGradient {
   WholeVector by_whole = WholeVector::Zero();  // with the bubble's two numbers
 };
 
@@ -55,7 +54,7 @@ void add_by_places(const StressedFacet& at, Tape& tape, FacetWork& work) {
                   work_at(at, taped.X, p, frame, bubble, taped.thickness_at(p));
   }
   work.value = sum.value;
-  work.by_shape = taped.transpose(sum);
+  work.by = taped.transpose(sum);
 }
 
 /// By the nodes' numbers and the bubble, which resultants are linear in.
@@ -89,13 +88,6 @@ FacetField field_of(const ShellMesh& mesh, int facet, const VectorX& nodal) {
   return Eigen::Map<const FacetField>(own.data());
 }
 
-ShellGradient empty_gradient(const ShellMesh& mesh) {
-  ShellGradient gradient;
-  gradient.by_nodes.assign(mesh.nodes.size(), Vec3::Zero());
-  gradient.by_thickness.assign(mesh.facets.size(), Vec3::Zero());
-  return gradient;
-}
-
 void add_gradient(double factor, const ShellGradient& more,
                   ShellGradient& sum) {
   for (std::size_t i = 0; i < more.by_nodes.size(); ++i) {
@@ -107,7 +99,8 @@ void add_gradient(double factor, const ShellGradient& more,
 }
 
 /// Twice the kinetic energy of unit frequency of one facet.
-FacetWork facet_inertia(const Facet& facet, const FacetField& x, Tape& tape) {
+FacetGradient facet_inertia(const Facet& facet, const FacetField& x,
+                            Tape& tape) {
   const TapedFacet taped(facet, tape);
   Taped sum(0.0);
   for (const FacetPoint& p : facet_rule()) {
@@ -131,7 +124,7 @@ FacetWork facet_inertia(const Facet& facet, const FacetField& x, Tape& tape) {
     }
     sum = sum + p.weight * frame.area * density;
   }
-  return {.value = sum.value, .by_shape = taped.transpose(sum)};
+  return {sum.value, taped.transpose(sum)};
 }
 
 }  // namespace
@@ -172,8 +165,7 @@ ModeWork geometric_work(const ShellMesh& mesh,
                 none};
   work.value = 0.0;
   for (std::size_t f = 0; f < parts.size(); ++f) {
-    work.value += parts[f].value;
-    add_by_shape(mesh, static_cast<int>(f), parts[f].by_shape, work);
+    add_facet(mesh, static_cast<int>(f), parts[f], work);
     for (int i = 0; i < kNodes; ++i) {
       work.by_displacement.segment<6>(6L * mesh.facets[f][i]) +=
           parts[f].by_whole.segment<6>(6L * i);
@@ -187,7 +179,7 @@ ShellGradient inertia_work(const ShellMesh& mesh,
                            const VectorX& x) {
   check_shell(mesh, sections);
   const std::vector<LaminateLaw> laws = laminate_laws(sections);
-  std::vector<FacetWork> parts(mesh.facets.size());
+  std::vector<FacetGradient> parts(mesh.facets.size());
   parallel_for(static_cast<std::ptrdiff_t>(parts.size()),
                [&](std::ptrdiff_t k) {
                  static thread_local Tape tape;
@@ -195,27 +187,16 @@ ShellGradient inertia_work(const ShellMesh& mesh,
                  parts[k] = facet_inertia(facet_of(mesh, sections, laws, f),
                                           field_of(mesh, f, x), tape);
                });
-  ShellGradient work = empty_gradient(mesh);
-  for (std::size_t f = 0; f < parts.size(); ++f) {
-    work.value += parts[f].value;
-    add_by_shape(mesh, static_cast<int>(f), parts[f].by_shape, work);
-  }
-  return work;
+  return gradient_of(mesh, parts);
 }
 
-VectorX mass_times(const ShellMesh& mesh, const std::vector<Section>& sections,
-                   const VectorX& x) {
+SparseMatrix nodal_mass(const ShellMesh& mesh,
+                        const std::vector<Section>& sections) {
   const std::vector<LaminateLaw> laws = laminate_laws(sections);
-  VectorX product = VectorX::Zero(x.size());
-  const int facets = static_cast<int>(mesh.facets.size());
-  for (int f = 0; f < facets; ++f) {
-    const FacetVector own =
-        facet_mass(facet_of(mesh, sections, laws, f)) * numbers_of(mesh, f, x);
-    for (int i = 0; i < kNodes; ++i) {
-      product.segment<6>(6L * mesh.facets[f][i]) += own.segment<6>(6L * i);
-    }
-  }
-  return product;
+  const ShellFreedom free(static_cast<int>(mesh.nodes.size()), {});
+  return ShellAssembly(mesh, free).sum([&](int f) {
+    return facet_mass(facet_of(mesh, sections, laws, f));
+  });
 }
 
 ModeWork factor_functional(const ShellMesh& mesh,

@@ -6,6 +6,7 @@
 
 #include <vector>
 
+#include "core/math/linear_solve.h"
 #include "fea/modes/eigenvalue_functionals.h"
 #include "fea/shell/shell_gradient.h"
 #include "fea/shell/shell_loads.h"
@@ -31,9 +32,9 @@ ShellGradient inertia_work(const ShellMesh& mesh,
                            const std::vector<Section>& sections,
                            const VectorX& x);
 
-/// M x, without derivatives.
-VectorX mass_times(const ShellMesh& mesh, const std::vector<Section>& sections,
-                   const VectorX& x);
+/// M of all nodes' numbers, lower triangle.
+SparseMatrix nodal_mass(const ShellMesh& mesh,
+                        const std::vector<Section>& sections);
 
 /// sum weight_k factor_k, factors of the loads at the solution `u` under them:
 /// d lambda = -x^T (dK + lambda dK_g) x / x^T K_g x. Throws as the works.

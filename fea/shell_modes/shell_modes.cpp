@@ -138,17 +138,9 @@ VectorX nodal_shape(const ShellFreedom& freedom, const VectorX& unknowns) {
   return freedom.expand(unknowns) - freedom.held_values();
 }
 
-VectorX moved(const VectorX& six) {
-  VectorX three(six.size() / 2);
-  for (Eigen::Index i = 0; i < three.size() / 3; ++i) {
-    three.segment<3>(3 * i) = six.segment<3>(6 * i);
-  }
-  return three;
-}
-
 /// 1 or -1, by which displacements get their fixed sign.
 double sign_of(const VectorX& six) {
-  const VectorX three = moved(six);
+  const VectorX three = displacements_of(six);
   return modes::with_fixed_sign(three).dot(three) < 0.0 ? -1.0 : 1.0;
 }
 
@@ -296,7 +288,8 @@ modes::BucklingModes buckling_modes(const ShellSystem& system,
   for (std::size_t k = 0; k < found.factors.size(); ++k) {
     const VectorX x = nodal_shape(system.freedom(),
                                   pairs.x.col(static_cast<Eigen::Index>(k)));
-    found.shapes.push_back(sign_of(x) * x / modes::largest_of_nodes(moved(x)));
+    found.shapes.push_back(sign_of(x) * x /
+                           modes::largest_of_nodes(displacements_of(x)));
   }
   found.seconds = timer.seconds();
   return found;

@@ -94,14 +94,6 @@ Mat3 turned_to(const Mat3& frame, const Vec3& direction, int& column) {
   return turned;
 }
 
-Mat3 frame_of(const Vec3& first, const Vec3& normal) {
-  Mat3 frame;
-  frame.col(2) = normal;
-  frame.col(0) = (first - first.dot(normal) * normal).normalized();
-  frame.col(1) = normal.cross(frame.col(0));
-  return frame;
-}
-
 /// False where displacements are held aslant to the wall's frame.
 bool hold(const NodeSpans& spans, const Vec3& normal, HeldShellNode& held) {
   Mat3 frame = Mat3::Identity();
@@ -113,10 +105,10 @@ bool hold(const NodeSpans& spans, const Vec3& normal, HeldShellNode& held) {
                            ? spans.displacements.direction()
                            : normal.unitOrthogonal();
       const bool is_normal = any.cross(normal).norm() < kAlong;
-      frame = frame_of(turns.count == 1 ? turns.about
-                       : is_normal      ? normal.unitOrthogonal()
-                                        : any,
-                       normal);
+      frame = wall_frame(turns.count == 1 ? turns.about
+                         : is_normal      ? normal.unitOrthogonal()
+                                          : any,
+                         normal);
       held.fixed[3] = true;
       held.fixed[4] = turns.count == 2;
     }
@@ -147,13 +139,15 @@ bool hold(const NodeSpans& spans, const Vec3& normal, HeldShellNode& held) {
   return true;
 }
 
-/// Three together, or none, are held in any frame.
-bool needs_its_frame(const HeldShellNode& held) {
-  const std::array<bool, 6>& f = held.fixed;
-  return !(f[0] == f[1] && f[1] == f[2] && f[3] == f[4] && f[4] == f[5]);
-}
-
 }  // namespace
+
+Mat3 wall_frame(const Vec3& first, const Vec3& normal) {
+  Mat3 frame;
+  frame.col(2) = normal;
+  frame.col(0) = (first - first.dot(normal) * normal).normalized();
+  frame.col(1) = normal.cross(frame.col(0));
+  return frame;
+}
 
 std::vector<std::map<int, HeldShellNode>> held_shell_nodes(
     const ShellDeck& deck, const Points& normals) {
@@ -172,7 +166,7 @@ std::vector<std::map<int, HeldShellNode>> held_shell_nodes(
             "bdf",
             step.name, node + 1, at.x(), at.y(), at.z()));
       }
-      if (needs_its_frame(held)) {
+      if (needs_axes(held.fixed)) {
         const auto known = frames.emplace(node, held.frame).first;
         if (known->second != held.frame) {
           throw InvalidInput(fmt::format(

@@ -17,6 +17,10 @@ struct HeldShellNode {
   std::optional<Mat3> frame;  // unit vectors, one a column
 };
 
+/// Third axis along the wall's normal, a unit vector, first as near to `first`
+/// as it can be.
+Mat3 wall_frame(const Vec3& first, const Vec3& normal);
+
 /// Per step, by node. CalculiX has no rotation about a wall's normal: where it
 /// is held beside another, the wall can not turn at all in CalculiX. A node
 /// whose rotations are held in part has a frame along its normal, and those

@@ -64,16 +64,6 @@ NodeWalls walls_of(const ShellDeck& deck) {
   return walls;
 }
 
-/// Third axis along the wall's normal. CalculiX takes moments about two axes in
-/// a wall, none about its normal.
-Mat3 frame_about(const Vec3& normal) {
-  Mat3 frame;
-  frame.col(2) = normal.normalized();
-  frame.col(0) = frame.col(2).unitOrthogonal();
-  frame.col(1) = frame.col(2).cross(frame.col(0));
-  return frame;
-}
-
 class ShellWriter {
  public:
   explicit ShellWriter(const ShellDeck& deck)
@@ -128,7 +118,10 @@ class ShellWriter {
         if (!step.nodal_forces.segment<3>(3 * n).isZero(0.0) &&
             !walls_.to_middle[node].isZero(0.0) && !is_held(node)) {
           eccentric_.insert(node);
-          turned_.emplace(node, frame_about(walls_.normals[node]));
+          // CalculiX takes moments about two axes in a wall, none about its
+          // normal.
+          const Vec3& normal = walls_.normals[node];
+          turned_.emplace(node, wall_frame(normal.unitOrthogonal(), normal));
         }
       }
     }

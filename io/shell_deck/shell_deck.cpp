@@ -88,22 +88,17 @@ std::optional<double> even_thickness(const ShellDeck& deck, int section) {
   return even;
 }
 
-namespace {
-
-/// Three components held together are the same along any axes.
-bool turns_with_axes(const DeckShellSupport& support) {
-  const std::array<bool, 6>& f = support.fixed;
-  return !(f[0] == f[1] && f[1] == f[2] && f[3] == f[4] && f[4] == f[5]);
+bool needs_axes(const std::array<bool, 6>& fixed) {
+  return !(fixed[0] == fixed[1] && fixed[1] == fixed[2] &&
+           fixed[3] == fixed[4] && fixed[4] == fixed[5]);
 }
-
-}  // namespace
 
 std::map<int, Mat3> turned_nodes(const ShellDeck& deck) {
   std::map<int, Mat3> turned;
   std::map<int, Mat3> held;  // plain ones, too
   for (const DeckShellStep& step : deck.steps) {
     for (const DeckShellSupport& support : step.supports) {
-      if (!turns_with_axes(support)) {
+      if (!needs_axes(support.fixed)) {
         continue;
       }
       const Mat3 axes = support.axes.value_or(Mat3::Identity());

@@ -68,6 +68,9 @@ void check_shell_deck(const ShellDeck& deck);
 /// The one thickness of a section's facets, where they have one.
 std::optional<double> even_thickness(const ShellDeck& deck, int section);
 
+/// Three displacements, or rotations, held together are so along any axes.
+bool needs_axes(const std::array<bool, 6>& fixed);
+
 /// Axes of the nodes that a step holds along axes of their own. Throws
 /// InvalidInput, naming step and node, where a deck cannot say it: a node has
 /// one frame in all steps, and is held elsewhere along others only with all

@@ -551,30 +551,33 @@ std::vector<BodyEntry> solid_bodies(const Case& input) {
 
 namespace {
 
-/// All curves are where the initial design has them.
-bool has_first_curves(const Case& input, const films::FilmSystem& system) {
+/// Those of the initial design, or where it has none those of `now`.
+std::vector<curves::Curve> start_curves(const Case& input,
+                                        const VectorX& design,
+                                        const std::vector<curves::Curve>& now) {
+  const VectorX initial = initial_design(input);
+  if (design == initial) {
+    return now;
+  }
   std::vector<std::string> problems;
-  const std::vector<curves::Curve> first =
-      curves_of(input, CaseValues(input, initial_design(input), problems));
-  return problems.empty() &&
-         std::equal(first.begin(), first.end(), system.curves.begin(),
-                    system.curves.end(),
-                    [](const curves::Curve& a, const curves::Curve& b) {
-                      return curves::are_equal(a.shape, b.shape);
-                    });
+  std::vector<curves::Curve> first =
+      curves_of(input, CaseValues(input, initial, problems));
+  return problems.empty() ? first : now;
 }
 
 /// Where curves lie to each other, sides that they share, ends of lines.
+/// `first`: those of the initial design.
 void check_curves(const Case& input, const films::FilmSystem& system,
+                  const std::vector<curves::Curve>& first,
                   const VectorX& design, const CaseValues& values) {
   const std::size_t before = values.problems().size();
   check_meetings(input, system, values);
   if (values.problems().size() == before) {
-    check_nesting(input, system, design, values.problems());
+    check_nesting(input, system, first, design, values.problems());
   }
   check_sides(input, system, values);
   check_free_sides(input, system, values);
-  check_join_ends(input, system, design, values.problems());
+  check_join_ends(input, system, first, values.problems());
 }
 
 }  // namespace
@@ -591,9 +594,12 @@ EvaluatedCase evaluate(const Case& input, const VectorX& design,
   result.fea_edge = input.resolution.fea;
   if (problems.size() == before) {
     // Said at the initial design, it is true of all with its curves.
+    const films::FilmSystem& system = result.film_system;
+    const std::vector<curves::Curve> first =
+        start_curves(input, design, system.curves);
     if (design == initial_design(input) ||
-        !has_first_curves(input, result.film_system)) {
-      check_curves(input, result.film_system, design, values);
+        !have_equal_shapes(first, system.curves)) {
+      check_curves(input, system, first, design, values);
     }
     check_places(input, result, values);
     check_on_walls(input, result.film_system, values);

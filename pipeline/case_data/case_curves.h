@@ -16,6 +16,10 @@ namespace meniscus::case_data {
 std::vector<curves::Curve> curves_of(const Case& input,
                                      const CaseValues& values);
 
+/// One after the other; expressions are not looked at: false.
+bool have_equal_shapes(const std::vector<curves::Curve>& a,
+                       const std::vector<curves::Curve>& b);
+
 /// The names of curves that films and solids end at.
 std::set<std::string> held_curves(const Case& input);
 
@@ -25,8 +29,10 @@ void check_meetings(const Case& input, const films::FilmSystem& system,
 
 /// Tells of rims of one plane face that at the initial design lay beside each
 /// other and at this one within, or the other way around: between the two they
-/// have merged. `design`: that of `system`.
+/// have merged. `first`: the curves of the initial design; `design`: that of
+/// `system`.
 void check_nesting(const Case& input, const films::FilmSystem& system,
+                   const std::vector<curves::Curve>& first,
                    const VectorX& design, std::vector<std::string>& problems);
 
 /// Finds curves of films and solids that lie on each other at the initial

@@ -232,21 +232,17 @@ void check_free_sides(const Case& input, const films::FilmSystem& system,
 }
 
 void check_join_ends(const Case& input, const films::FilmSystem& system,
-                     const VectorX& design,
+                     const std::vector<curves::Curve>& first,
                      std::vector<std::string>& problems) {
   constexpr double kStays = 1e-5;  // of the curve's parameter
   const std::vector<films::JoinEnd> ends = films::join_ends(system);
-  std::vector<films::JoinEnd> first;
-  const VectorX initial = initial_design(input);
-  if (!ends.empty() && design != initial) {
-    std::vector<std::string> of_first;
+  std::vector<films::JoinEnd> first_ends;
+  if (!ends.empty() && !have_equal_shapes(first, system.curves)) {
     films::FilmSystem there = system;
-    const std::vector<curves::Curve> curves =
-        curves_of(input, CaseValues(input, initial, of_first));
-    for (std::size_t c = 0; c < curves.size() && of_first.empty(); ++c) {
-      there.curves[c].shape = curves[c].shape;
+    for (std::size_t c = 0; c < first.size(); ++c) {
+      there.curves[c].shape = first[c].shape;
     }
-    first = films::join_ends(there);
+    first_ends = films::join_ends(there);
   }
   for (std::size_t k = 0; k < ends.size(); ++k) {
     const films::JoinEnd& end = ends[k];
@@ -266,9 +262,10 @@ void check_join_ends(const Case& input, const films::FilmSystem& system,
           start, end.distance));
       return;
     }
-    const double moved = k < first.size() && first[k].curve == end.curve
-                             ? std::abs(end.t - first[k].t)
-                             : 0.0;
+    const double moved =
+        k < first_ends.size() && first_ends[k].curve == end.curve
+            ? std::abs(end.t - first_ends[k].t)
+            : 0.0;
     if (std::min(moved, 1.0 - moved) > kStays) {
       problems.push_back(fmt::format(
           "{}elsewhere along curve '{}' than at the initial design; models "

@@ -24,9 +24,10 @@ void check_free_sides(const Case& input, const films::FilmSystem& system,
 
 /// Tells of films that join others along a line that ends where nothing holds
 /// these, or elsewhere along their curve than at the initial design: models
-/// keep its place there. `design`: that of `system`.
+/// keep its place there. `first`: the curves of that design.
 void check_join_ends(const Case& input, const films::FilmSystem& system,
-                     const VectorX& design, std::vector<std::string>& problems);
+                     const std::vector<curves::Curve>& first,
+                     std::vector<std::string>& problems);
 
 /// Tells of bodies whose faces leave a curve's side open, or meet there more
 /// than two at a time.

@@ -113,7 +113,7 @@ void Adjoint::solve_shell_adjoints(DesignGradient& result) {
       back.lambda =
           solved.system->solve_forces(right.size() == solved.displacement.size()
                                           ? right
-                                          : shells::with_rotations(right));
+                                          : shell::with_rotations(right));
       ++result.solves;
     }
   }

@@ -248,7 +248,7 @@ std::vector<ModeShape> mode_shapes(const case_data::Case& input,
                                    const EigenFigures& figures) {
   std::vector<ModeShape> shapes;
   const auto moved = [&](const VectorX& shape) {
-    return input.shells.empty() ? shape : shells::displacements_of(shape);
+    return input.shells.empty() ? shape : shell::displacements_of(shape);
   };
   if (figures.frequencies) {
     const modes::NaturalModes& modes = figures.frequencies->modes;

@@ -134,13 +134,13 @@ std::optional<std::size_t> followed_mode(const ModeTask& task,
     return modes::same_mode(task.mesh, densities(task, found.kind),
                             found.shapes, reference);
   }
-  const std::vector<shell::Section> sections =
-      found.kind == ResponseKind::Frequency
-          ? task.shell->sections
-          : shells::with_density(task.shell->sections, 1.0);
+  const SparseMatrix M = shell::nodal_mass(
+      task.shell->mesh, found.kind == ResponseKind::Frequency
+                            ? task.shell->sections
+                            : shells::with_density(task.shell->sections, 1.0));
   return modes::same_mode(
-      [&](const VectorX& x) {
-        return shell::mass_times(task.shell->mesh, sections, x);
+      [&](const VectorX& x) -> VectorX {
+        return M.selfadjointView<Eigen::Lower>() * x;
       },
       found.shapes, reference);
 }

@@ -211,7 +211,7 @@ void msh(ExportJob& job, const fs::path& file) {
          .values = {u.begin(), u.end()}});
     if (fields.shell) {
       const VectorX turned =
-          shells::rotations_of(fields.shell->cases[k].displacement);
+          shell::rotations_of(fields.shell->cases[k].displacement);
       options.fields.push_back(
           {.name = fmt::format("rotation, {} [rad]", load_case),
            .components = 3,

@@ -131,7 +131,7 @@ void add_shell_fields(const case_data::Case& input,
                                   3, u.data(),
                                   static_cast<std::size_t>(u.size())));
   const VectorX turned =
-      shells::rotations_of(part.cases[load_case].displacement);
+      shell::rotations_of(part.cases[load_case].displacement);
   const std::vector<double> turns =
       behind_solids(part, {}, {turned.begin(), turned.end()});
   out.points.push_back(

@@ -71,7 +71,7 @@ shell_deck::DeckShellStep shell_step_of(const shells::ShellPart& part,
   others.gravity.setZero();
   others.spin.reset();
   // Without moments: neither rims nor films carry any at nodes.
-  step.nodal_forces = shells::displacements_of(
+  step.nodal_forces = shell::displacements_of(
       shell::nodal_forces(part.mesh, part.sections, others));
   for (const shell::FacetPressure& p : all.pressures) {
     step.pressures.push_back({p.facet, p.pressure});

@@ -147,10 +147,10 @@ void solve_both(const loads::LoadCase& load_case, ShellPart& part,
     report.reaction_imbalance =
         joint_imbalance(part, own.forces, own.solid_reactions, held);
   }
-  solution.displacements.push_back(
-      joined(of_solid(part, own.both), displacements_of(own.displacement)));
+  solution.displacements.push_back(joined(
+      of_solid(part, own.both), shell::displacements_of(own.displacement)));
   solution.reactions.push_back(
-      joined(own.solid_reactions, displacements_of(held)));
+      joined(own.solid_reactions, shell::displacements_of(held)));
   report.solve_seconds += timer.seconds();
 }
 
@@ -240,7 +240,7 @@ VectorX by_both(const ShellPart& part, const VectorX& by_displacement) {
   }
   return by_displacement.size() == solid_size(part) + shell / 2
              ? joined(of_solid(part, by_displacement),
-                      with_rotations(of_shell(part, by_displacement)))
+                      shell::with_rotations(of_shell(part, by_displacement)))
              : joined(VectorX::Zero(solid_size(part)), by_displacement);
 }
 

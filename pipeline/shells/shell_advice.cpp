@@ -202,14 +202,14 @@ std::set<int> nodes_of_rims(const ShellPart& part) {
   return nodes;
 }
 
-Bend most_bent(const ShellPart& part, int shell) {
+/// Of each shell.
+std::vector<Bend> most_bent(const ShellPart& part) {
   const std::set<int> rims = nodes_of_rims(part);
   std::map<int, std::map<int, Vec3>> normals;  // by label
-  Bend most;
+  std::vector<Bend> most(part.sections.size());
   for (std::size_t f = 0; f < part.mesh.facets.size(); ++f) {
     const std::array<int, 6>& facet = part.mesh.facets[f];
-    if (part.mesh.section[f] != shell ||
-        std::any_of(facet.begin(), facet.begin() + 3,
+    if (std::any_of(facet.begin(), facet.begin() + 3,
                     [&](int node) { return rims.contains(node); })) {
       continue;
     }
@@ -225,8 +225,9 @@ Bend most_bent(const ShellPart& part, int shell) {
     }
     const double thickness = part.mesh.thickness[f].mean();
     const double share = thickness * curvature_of(x, n);
-    if (share > most.share) {
-      most = {share, thickness, (x[0] + x[1] + x[2]) / 3.0};
+    Bend& own = most[static_cast<std::size_t>(part.mesh.section[f])];
+    if (share > own.share) {
+      own = {share, thickness, (x[0] + x[1] + x[2]) / 3.0};
     }
   }
   return most;
@@ -238,6 +239,9 @@ std::vector<std::string> thin_wall_advice(
     const case_data::Case& input, const case_data::EvaluatedCase& inputs,
     const std::map<std::string, Points>& films) {
   std::vector<std::string> advice;
+  if (input.walls.empty() || !shells_can(input)) {
+    return advice;
+  }
   const double edge = inputs.fea_edge;
   for (std::size_t w = 0; w < input.walls.size(); ++w) {
     const case_data::WallEntry& wall = input.walls[w];
@@ -251,7 +255,7 @@ std::vector<std::string> thin_wall_advice(
     }
     const std::optional<ThicknessAt> least =
         thinnest(inputs.walls[w].thickness, points);
-    if (!least || least->value >= edge || !shells_can(input)) {
+    if (!least || least->value >= edge) {
       continue;
     }
     advice.push_back(fmt::format(
@@ -298,8 +302,9 @@ std::vector<std::string> thick_shell_advice(
 std::vector<std::string> thick_shell_warnings(const case_data::Case& input,
                                               const ShellPart& part) {
   std::vector<std::string> warnings;
+  const std::vector<Bend> bends = most_bent(part);
   for (std::size_t s = 0; s < input.shells.size(); ++s) {
-    const Bend most = most_bent(part, static_cast<int>(s));
+    const Bend& most = bends[s];
     if (most.share > kThick) {
       warnings.push_back(fmt::format(
           "shells.{} is {}, where its film bends with a radius of {:.4g} {}: "

@@ -14,11 +14,26 @@ namespace {
 
 using Face = std::array<int, 6>;
 
+/// Names of the rims that an edge is on, by its middle.
+using RimsAtMiddles = std::map<int, std::vector<std::string>>;
+
+RimsAtMiddles rims_at_middles(const ShellPart& part) {
+  RimsAtMiddles rims;
+  for (const auto& [name, rim] : part.rims) {
+    for (const auto& [from, to, middle] : rim) {
+      rims[middle].push_back(name);
+    }
+  }
+  return rims;
+}
+
 /// One film's closed surface.
 class FilmBody {
  public:
-  FilmBody(const ShellPart& part, int label, int number, ShellBody& body)
+  FilmBody(const ShellPart& part, const RimsAtMiddles& rims, int label,
+           int number, ShellBody& body)
       : part_(part),
+        rims_(rims),
         label_(label),
         number_(number),
         body_(body),
@@ -95,12 +110,11 @@ class FilmBody {
   /// Of the edge with that middle.
   std::string rim_name(const std::string& film, int middle) const {
     const std::string start = film + "/rim";
-    for (const auto& [name, rim] : part_.rims) {
-      if (name.starts_with(start + ":") &&
-          std::any_of(rim.begin(), rim.end(), [middle](const auto& edge) {
-            return edge[2] == middle;
-          })) {
-        return name;
+    if (const auto at = rims_.find(middle); at != rims_.end()) {
+      for (const std::string& name : at->second) {
+        if (name.starts_with(start + ":")) {
+          return name;
+        }
       }
     }
     return start;
@@ -139,6 +153,7 @@ class FilmBody {
   }
 
   const ShellPart& part_;
+  const RimsAtMiddles& rims_;
   int label_;
   int number_;
   ShellBody& body_;
@@ -153,9 +168,10 @@ ShellBody shell_body(const ShellPart& part) {
   ShellBody body;
   body.mesh.order = 2;
   const std::vector<std::string> names = body_names(part);
+  const RimsAtMiddles rims = rims_at_middles(part);
   for (std::size_t film = 0; film < names.size(); ++film) {
-    FilmBody(part, part.skin.label_of(names[film]), static_cast<int>(film),
-             body)
+    FilmBody(part, rims, part.skin.label_of(names[film]),
+             static_cast<int>(film), body)
         .build(names[film]);
   }
   return body;

@@ -362,8 +362,8 @@ void solve_case(const loads::LoadCase& load_case, ShellPart& part,
     report.strain_energy = found.strain_energy;
     report.reaction_imbalance = imbalance(forces, found.reaction);
   }
-  solution.displacements.push_back(displacements_of(found.displacement));
-  solution.reactions.push_back(displacements_of(found.reaction));
+  solution.displacements.push_back(shell::displacements_of(found.displacement));
+  solution.reactions.push_back(shell::displacements_of(found.reaction));
   report.solve_seconds += timer.seconds();
 }
 

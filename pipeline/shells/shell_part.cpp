@@ -140,7 +140,7 @@ ShellActions shell_actions(const ShellPart& part,
   result.loads.spin = load_case.spin;
   if (acts_on_films(result.on_films)) {
     result.loads.nodal =
-        with_rotations(loads::nodal_forces(part.skin, result.on_films));
+        shell::with_rotations(loads::nodal_forces(part.skin, result.on_films));
   }
   return result;
 }
@@ -152,7 +152,8 @@ shell::ShellGradient work_gradient(const ShellPart& part, std::size_t load_case,
       shell::residual_gradient(part.mesh, part.sections, actions.loads, v, u);
   if (acts_on_films(actions.on_films)) {
     supports::add_surface_load_gradient(part.skin, actions.on_films,
-                                        displacements_of(v), gradient.by_nodes);
+                                        shell::displacements_of(v),
+                                        gradient.by_nodes);
   }
   // The force per length of a rim falls as the rim grows.
   for (const RimForce& force : actions.rims) {
@@ -176,7 +177,7 @@ double work_rate(const ShellPart& part, const loads::LoadCase& load_case,
   const loads::LoadCase films = on_films(load_case);
   if (acts_on_films(films)) {
     rate += loads::load_rate(
-        loads::load_gradient(part.skin, {}, films, displacements_of(v)),
+        loads::load_gradient(part.skin, {}, films, shell::displacements_of(v)),
         on_films(rates));
   }
   return rate;
@@ -233,30 +234,6 @@ std::vector<shell::Section> with_density(std::vector<shell::Section> sections,
     }
   }
   return sections;
-}
-
-VectorX displacements_of(const VectorX& six) {
-  VectorX three(six.size() / 2);
-  for (Eigen::Index i = 0; i < three.size() / 3; ++i) {
-    three.segment<3>(3 * i) = six.segment<3>(6 * i);
-  }
-  return three;
-}
-
-VectorX rotations_of(const VectorX& six) {
-  VectorX three(six.size() / 2);
-  for (Eigen::Index i = 0; i < three.size() / 3; ++i) {
-    three.segment<3>(3 * i) = six.segment<3>(6 * i + 3);
-  }
-  return three;
-}
-
-VectorX with_rotations(const VectorX& three) {
-  VectorX six = VectorX::Zero(2 * three.size());
-  for (Eigen::Index i = 0; i < three.size() / 3; ++i) {
-    six.segment<3>(6 * i) = three.segment<3>(3 * i);
-  }
-  return six;
 }
 
 }  // namespace meniscus::shells

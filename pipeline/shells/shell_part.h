@@ -116,10 +116,4 @@ std::vector<double> nodal_von_mises(
 std::vector<shell::Section> with_density(std::vector<shell::Section> sections,
                                          double density);
 
-/// Displacements and rotations of 6 numbers per node, 3 each; and back, without
-/// rotations.
-VectorX displacements_of(const VectorX& six);
-VectorX rotations_of(const VectorX& six);
-VectorX with_rotations(const VectorX& three);
-
 }  // namespace meniscus::shells
