@@ -20,7 +20,7 @@ namespace meniscus::joint {
 
 namespace {
 
-constexpr double kTouches = 0.1;  // of the thickness
+constexpr double kTouches = 0.1;  // of the thickness, and of the edge
 constexpr int kAlong = 4;         // fibres of an edge
 constexpr int kAcross = 8;        // points of a fibre
 
@@ -132,6 +132,10 @@ double thickness_on(const shell::ShellMesh& mesh, const FacetEdge& edge,
   return (1.0 - s) * t[edge.side] + s * t[(edge.side + 1) % 3];
 }
 
+double length_of(const shell::ShellMesh& mesh, const FacetEdge& edge) {
+  return (mesh.nodes[edge.nodes[1]] - mesh.nodes[edge.nodes[0]]).norm();
+}
+
 std::vector<FacetEdge> edges_on(const SolidFaces& faces,
                                 const shell::ShellMesh& mesh) {
   std::vector<double> away;
@@ -143,7 +147,9 @@ std::vector<FacetEdge> edges_on(const SolidFaces& faces,
   for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
     for (int side = 0; side < 3; ++side) {
       const FacetEdge edge = edge_of(mesh, static_cast<int>(f), side);
-      const double most = kTouches * thickness_on(mesh, edge, 0.5);
+      // Edges that only begin there leave it by their length.
+      const double most = kTouches * std::min(thickness_on(mesh, edge, 0.5),
+                                              length_of(mesh, edge));
       if (std::all_of(edge.nodes.begin(), edge.nodes.end(),
                       [&](int node) { return away[node] <= most; })) {
         edges.push_back(edge);
@@ -208,8 +214,7 @@ EdgeTie tie_edges(const TetMesh& solid, const shell::ShellMesh& mesh,
   std::map<int, TiedNode> nodes;
   std::map<int, double> thickness;
   for (const FacetEdge& edge : edges_on(faces, mesh)) {
-    const double length =
-        (mesh.nodes[edge.nodes[1]] - mesh.nodes[edge.nodes[0]]).norm();
+    const double length = length_of(mesh, edge);
     const double offset = sections[mesh.section[edge.facet]].offset;
     for (const GaussPoint& along : gauss_rule(kAlong)) {
       const auto fibre = static_cast<int>(tie.fibres.size());

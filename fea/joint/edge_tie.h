@@ -49,9 +49,9 @@ struct EdgeTie {
 };
 
 /// Of all edges of facets whose three nodes lie within a tenth of the thickness
-/// of the surface of `solid`, which has ten-node elements. Throws InvalidInput,
-/// naming the place, where a wall's end has no width on the solid, so that it
-/// could turn there as on a hinge.
+/// and of their length of the surface of `solid`, which has ten-node elements.
+/// Throws InvalidInput, naming the place, where a wall's end has no width on
+/// the solid, so that it could turn there as on a hinge.
 EdgeTie tie_edges(const TetMesh& solid, const shell::ShellMesh& mesh,
                   const std::vector<shell::Section>& sections);
 

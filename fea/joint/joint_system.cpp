@@ -207,11 +207,11 @@ VectorX JointSystem::restrict(const VectorX& both) const {
   const VectorX on_solid = both.head(size) + to_solid(shell_forces);
   VectorX right(unknowns());
   for (std::size_t i = 0; i < order_.to_mesh.size(); ++i) {
-    const int first = free_.start[i];
-    const int count = free_.start[i + 1] - first;
-    right.segment(first, count) =
-        free_.bases[i].axes.leftCols(count).transpose() *
-        on_solid.segment<3>(3L * order_.to_mesh[i]);
+    for (int k = free_.start[i]; k < free_.start[i + 1]; ++k) {
+      right[k] = free_.bases[i]
+                     .axes.col(k - free_.start[i])
+                     .dot(on_solid.segment<3>(3L * order_.to_mesh[i]));
+    }
   }
   VectorX own = shell_.restrict(shell_forces);
   for (const TieRow& row : rows_) {
@@ -227,10 +227,10 @@ VectorX JointSystem::solve(const VectorX& forces) const {
   VectorX u = VectorX::Zero(forces.size());
   const auto size = 3L * static_cast<Eigen::Index>(solid_.nodes.size());
   for (std::size_t i = 0; i < order_.to_mesh.size(); ++i) {
-    const int first = free_.start[i];
-    const int count = free_.start[i + 1] - first;
-    u.segment<3>(3L * order_.to_mesh[i]) =
-        free_.bases[i].axes.leftCols(count) * q.segment(first, count);
+    for (int k = free_.start[i]; k < free_.start[i + 1]; ++k) {
+      u.segment<3>(3L * order_.to_mesh[i]) +=
+          q[k] * free_.bases[i].axes.col(k - free_.start[i]);
+    }
   }
   u.tail(u.size() - size) = shell_.expand(q.tail(q.size() - start_));
   for (const TieRow& row : rows_) {

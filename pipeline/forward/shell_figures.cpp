@@ -13,8 +13,9 @@ void find_shell_stresses(shells::ShellPart& part) {
 
 namespace {
 
-StressFigures figures_of(const std::string& load_case, const stress::Peak& peak,
-                         const element::Material& material) {
+StressFigures peak_figures(const std::string& load_case,
+                           const stress::Peak& peak,
+                           const element::Material& material) {
   StressFigures figures{.load_case = load_case,
                         .max_von_mises = peak.von_mises,
                         .position = peak.position};
@@ -39,7 +40,7 @@ StressFigures shell_figures(const EvaluationFields& fields,
   const shells::ShellPeak peak =
       shells::shell_peak(part, part.cases[load_case].stress);
   // Of the weakest material at its peak: sections may differ.
-  StressFigures figures = figures_of(
+  StressFigures figures = peak_figures(
       name, {.von_mises = peak.von_mises, .position = peak.position},
       part.sections[part.mesh.section[peak.facet]].laminate.plies[0].material);
   if (!part.solid) {
@@ -48,7 +49,7 @@ StressFigures shell_figures(const EvaluationFields& fields,
   const stress::Peak of_solid =
       stress::peak_of(part.solid->mesh, part.cases[load_case].solid_stress, {});
   StressFigures solid =
-      figures_of(name, of_solid, part.solid->materials[of_solid.region]);
+      peak_figures(name, of_solid, part.solid->materials[of_solid.region]);
   const bool is_weaker =
       solid.safety &&
       (!figures.safety || solid.safety->factor < figures.safety->factor);

@@ -17,6 +17,7 @@
 #include "fea/loads/body_loads.h"
 #include "fea/modes/eigenvalue_functionals.h"
 #include "fea/stress/peak_stress.h"
+#include "pipeline/shells/joint_part.h"
 
 namespace meniscus::responses {
 
@@ -84,8 +85,11 @@ const std::vector<element::Material>& materials(const ResponseTask& task) {
 
 /// Of a shell, both sides of a film are its facets.
 std::string surface_of(const ResponseTask& task) {
-  return task.fields.shell != nullptr ? shells::film_of(task.response.surface)
-                                      : task.response.surface;
+  const std::string& surface = task.response.surface;
+  return task.fields.shell != nullptr &&
+                 shells::is_of_shells(*task.fields.shell, surface)
+             ? shells::film_of(surface)
+             : surface;
 }
 
 ResponsePartials mean_displacement(const ResponseTask& task) {

@@ -782,7 +782,7 @@ constraints = [{ response = "stable", min = 1.5 }]
             ('youngs_modulus = "210 GPa"', 'youngs_modulus = "1e5 * fill"',
              "'steel' follows the design"),
             ('material = "void"', 'material = "steel"',
-             "shells.tube stands beside bodies.gas, which is solid"),
+             "shells.tube is of film 'skin', which encloses the solid bodies.gas"),
             ('"skin/rim:high", fix', '"skin/rim:hihg", fix',
              "there is no surface 'skin/rim:hihg'"),
         ]
