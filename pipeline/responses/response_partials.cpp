@@ -463,8 +463,9 @@ ResponsePartials of_solids(const ResponseTask& task) {
 /// Adds a response of the mesh alone.
 void add_of_mesh(const ResponsePartials& more, ResponsePartials& sum) {
   sum.value += more.value;
-  std::transform(sum.by_nodes.begin(), sum.by_nodes.end(),
-                 more.by_nodes.begin(), sum.by_nodes.begin(), std::plus<>());
+  for (std::size_t i = 0; i < more.by_nodes.size(); ++i) {  // none: not asked
+    sum.by_nodes[i] += more.by_nodes[i];
+  }
 }
 
 /// Of the part that the case draws.
