@@ -149,7 +149,6 @@ std::vector<JointSystem::Column> JointSystem::columns_of(int shell_node) const {
 }
 
 SparseMatrix JointSystem::shell_matrix() const {
-  // Of nodes that are not tied, blocks go in as they are.
   std::vector<Triplet> triplets;
   const auto facets = static_cast<int>(mesh_.facets.size());
   std::vector<shell::FacetMatrix> batch(std::min(kBatch, facets));
@@ -168,11 +167,13 @@ SparseMatrix JointSystem::shell_matrix() const {
         }
       }
       const auto n = static_cast<Eigen::Index>(columns.size());
-      Eigen::MatrixXd P = Eigen::MatrixXd::Zero(shell::kUnknowns, n);
+      using Columns = Eigen::Matrix<double, shell::kUnknowns, Eigen::Dynamic>;
+      Columns P = Columns::Zero(shell::kUnknowns, n);
       for (Eigen::Index c = 0; c < n; ++c) {
         P.block<6, 1>(6 * of_node[c], c) = columns[c].by;
       }
-      const Eigen::MatrixXd A = P.transpose() * (batch[k] * P);
+      const Columns KP = batch[k] * P;
+      const Eigen::MatrixXd A = P.transpose().lazyProduct(KP);
       for (Eigen::Index c = 0; c < n; ++c) {
         for (Eigen::Index r = 0; r < n; ++r) {
           if (columns[r].unknown >= columns[c].unknown) {
