@@ -267,7 +267,7 @@ TEST(JointSystem, IsPulledAsABarIs) {
     const Bar bar{.across = across, .through = across + 1};
     const double exact =
         2.0 * bar.length / (kModulus * bar.width * bar.thickness);
-    EXPECT_NEAR(solve_bar(bar, Vec3::UnitX()).tip.x(), exact, 2e-3 * exact)
+    EXPECT_NEAR(solve_bar(bar, Vec3::UnitX()).tip.x(), exact, 2e-4 * exact)
         << across;
   }
 }
@@ -290,13 +290,13 @@ TEST(JointSystem, BendsAsABeamDoes) {
     errors.push_back(
         std::abs(solve_bar(bar, Vec3::UnitZ()).tip.z() / exact - 1.0));
   }
-  EXPECT_LT(errors[0], 0.02);
-  EXPECT_LT(errors[1], 5e-3);
+  EXPECT_LT(errors[0], 2e-3);
+  EXPECT_LT(errors[1], 5e-4);
   const Bar flat{.along = 8, .across = 2};
   Bar turned = flat;
   std::swap(turned.width, turned.thickness);
   const double exact = beam_deflection(turned);
-  EXPECT_NEAR(solve_bar(flat, Vec3::UnitY()).tip.y(), exact, 0.01 * exact);
+  EXPECT_NEAR(solve_bar(flat, Vec3::UnitY()).tip.y(), exact, 2e-3 * exact);
 }
 
 TEST(JointSystem, IsSymmetric) {
