@@ -209,9 +209,23 @@ void write_vtu(const fs::path& path, const TetMesh& mesh,
     write<vtkXMLUnstructuredGridWriter>(path, grid);
     return;
   }
-  grid->SetCells(mesh.order == 1 ? VTK_TETRA : VTK_QUADRATIC_TETRA,
-                 make_cells(mesh.elements, mesh.nodes_per_element()));
-  add_ints(grid, "region", mesh.element_region, path);
+  // Faces of shells have no elements behind them: cells behind the elements.
+  std::vector<int> region = mesh.element_region;
+  std::vector<int> types(region.size(),
+                         mesh.order == 1 ? VTK_TETRA : VTK_QUADRATIC_TETRA);
+  vtkNew<vtkCellArray> cells =
+      make_cells(mesh.elements, mesh.nodes_per_element());
+  for (int f = 0; f < std::ssize(mesh.face_element); ++f) {
+    if (mesh.face_element[f] < 0) {
+      const auto face = mesh.face(f);
+      const std::vector<vtkIdType> ids(face.begin(), face.end());
+      cells->InsertNextCell(static_cast<vtkIdType>(ids.size()), ids.data());
+      types.push_back(mesh.order == 1 ? VTK_TRIANGLE : VTK_QUADRATIC_TRIANGLE);
+      region.push_back(-1);
+    }
+  }
+  grid->SetCells(types.data(), cells);
+  add_ints(grid, "region", region, path);
   add_fields(grid, fields, path);
   write<vtkXMLUnstructuredGridWriter>(path, grid);
 }

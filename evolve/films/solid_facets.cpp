@@ -1,5 +1,6 @@
 #include "evolve/films/solid_facets.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace meniscus::films {
@@ -16,15 +17,22 @@ std::vector<int> regions_of(const std::vector<BodySpec>& bodies) {
 
 void keep_solids(const FilmComplex& complex, const std::vector<int>& regions,
                  SurfaceMesh& mesh) {
-  if (complex.bodies.size() < 2) {
-    return;
-  }
   std::vector<FacetBodies> of_surface(complex.surfaces.size(), {-1, -1});
   for (std::size_t b = 0; b < complex.bodies.size(); ++b) {
     for (const BodySide& side : complex.bodies[b].sides) {
       FacetBodies& bodies = of_surface[side.surface];
       (side.sign > 0 ? bodies.behind : bodies.front) = regions[b];
     }
+  }
+  // One body has all surfaces, but for films beside it.
+  const auto is_bare = [](const FacetBodies& bodies) {
+    return bodies.behind < 0 && bodies.front < 0;
+  };
+  if (complex.bodies.empty() ||
+      (complex.bodies.size() == 1 &&
+       (regions.front() < 0 ||
+        std::none_of(of_surface.begin(), of_surface.end(), is_bare)))) {
+    return;
   }
   SurfaceMesh kept{.points = std::move(mesh.points),
                    .labels = std::move(mesh.labels)};

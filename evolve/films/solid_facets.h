@@ -13,8 +13,8 @@ std::vector<int> regions_of(const std::vector<BodySpec>& bodies);
 
 /// Facets of the oriented complex, any level of it, as the mesher wants them:
 /// out of the region behind, facets without material on either side left out,
-/// facet_bodies set to regions. With a single body the mesh stays as it is.
-/// `mesh.points` may be empty.
+/// facet_bodies set to regions. With a single body that has all surfaces, or is
+/// a void, the mesh stays as it is. `mesh.points` may be empty.
 void keep_solids(const FilmComplex& complex, const std::vector<int>& regions,
                  SurfaceMesh& mesh);
 

@@ -14,14 +14,6 @@
 
 namespace meniscus::shell {
 
-namespace {
-
-/// How well the least held motion is held, of how the best is: two nodes h
-/// apart hold the turn of a part of size L by (h / L)^2, rounding leaves 1e-14.
-constexpr double kHeld = 1e-11;
-
-/// A node's six numbers under six motions: along x y z, and turns about the
-/// part's center by which `size` moves 1; rotations times `size`.
 Matrix6 rigid_motions(const Vec3& arm, double size) {
   Matrix6 R = Matrix6::Identity();
   for (int k = 0; k < 3; ++k) {
@@ -37,6 +29,8 @@ std::string motion_text(const Eigen::Matrix<double, 6, 1>& motion) {
                      turns ? "turn about" : "move along", way[0], way[1],
                      way[2]);
 }
+
+namespace {
 
 /// Facets that hang together.
 struct Piece {

@@ -10,6 +10,7 @@
 #include "fea/shell/shell_factor.h"
 #include "fea/shell/shell_loads.h"
 #include "fea/shell/shell_mesh.h"
+#include "fea/shell/shell_stiffness.h"
 #include "fea/shell/shell_supports.h"
 
 namespace meniscus::shell {
@@ -40,7 +41,9 @@ class ShellSystem {
   VectorX solve_forces(const VectorX& forces) const;
 
   /// K u of all nodes, 6 numbers each, as `u` has.
-  VectorX stiffness_times(const VectorX& u) const;
+  VectorX stiffness_times(const VectorX& u) const {
+    return stiffness_.times(u);
+  }
 
   const ShellFreedom& freedom() const { return freedom_; }
   const ShellFactor& factor() const { return *factor_; }
@@ -55,12 +58,10 @@ class ShellSystem {
                          const VectorX& displacement) const;
 
  private:
-  FacetMatrix stiffness_of(int facet) const;
-
   const ShellMesh& mesh_;
   const std::vector<Section>& sections_;
   const FacetRule& rule_;
-  std::vector<LaminateLaw> laws_;
+  ShellStiffness stiffness_;
   ShellFreedom freedom_;
   ShellAssembly assembly_;
   std::optional<ShellFactor> factor_;

@@ -496,6 +496,13 @@ Inputs inputs_of(const Case& input, const CaseValues& values) {
         input, input.materials[static_cast<std::size_t>(body.material)],
         values));
   }
+  if (!input.shells.empty()) {  // of bodies there are none
+    const auto is_solid = [](const BodyEntry& body) {
+      return body.material != kVoid;
+    };
+    result.layer_angles.resize(static_cast<std::size_t>(
+        std::count_if(input.bodies.begin(), input.bodies.end(), is_solid)));
+  }
   for (const ShellEntry& shell : input.shells) {
     for (const LayerEntry& layer : shell.layers) {
       result.layer_angles.push_back(values.at(layer.angle));
@@ -520,16 +527,20 @@ void throw_first(const std::vector<std::string>& problems) {
 
 }  // namespace
 
+bool has_solids(const Case& input) {
+  return std::any_of(
+      input.bodies.begin(), input.bodies.end(),
+      [](const BodyEntry& body) { return body.material != kVoid; });
+}
+
 std::vector<BodyEntry> solid_bodies(const Case& input) {
   std::vector<BodyEntry> solid;
   std::copy_if(input.bodies.begin(), input.bodies.end(),
                std::back_inserter(solid),
                [](const BodyEntry& body) { return body.material != kVoid; });
-  if (!solid.empty()) {
-    return solid;
-  }
+  const bool has_bodies = !solid.empty();
   for (const WallEntry& wall : input.walls) {
-    if (wall.region == static_cast<int>(solid.size()) &&
+    if (!has_bodies && wall.region == static_cast<int>(solid.size()) &&
         wall.material != kVoid) {
       solid.push_back({.name = wall.name,
                        .enclosed_by = wall.films,
@@ -537,9 +548,6 @@ std::vector<BodyEntry> solid_bodies(const Case& input) {
                        .line = wall.line,
                        .enclosure_line = wall.line});
     }
-  }
-  if (!solid.empty()) {
-    return solid;
   }
   for (const ShellEntry& shell : input.shells) {
     for (const LayerEntry& layer : shell.layers) {

@@ -80,8 +80,12 @@ struct Case {
 
 /// The bodies that are not void, in order: the regions of the mesh. Without
 /// such bodies the walls that have a material, one for each set of walls that
-/// meet, named after its first; without these the layers of shells.
+/// meet, named after its first. Behind them the layers of shells, which are no
+/// regions.
 std::vector<BodyEntry> solid_bodies(const Case& input);
+
+/// Some body is not void.
+bool has_solids(const Case& input);
 
 /// What a response depends on beside fields.
 struct ResponseInputs {
@@ -107,8 +111,9 @@ struct StageInputs {
   std::vector<walls::WallSpec> walls;
   std::vector<walls::WallSpec> shells;
   std::vector<element::Material>
-      materials;                     // one per body that is solid, in order
-  std::vector<double> layer_angles;  // of shells: one per material [rad]
+      materials;  // one per body that is solid, in order
+  std::vector<double>
+      layer_angles;  // of a case with shells: one per material [rad]
   std::vector<loads::LoadCase> load_cases;
   std::vector<ResponseInputs> responses;
 };

@@ -12,6 +12,7 @@
 #include "pipeline/case_data/composed_responses.h"
 #include "pipeline/case_data/response_entries.h"
 #include "pipeline/forward/frozen_part.h"
+#include "pipeline/shells/joint_part.h"
 
 namespace meniscus::forward {
 
@@ -54,6 +55,8 @@ class Adjoint {
   std::vector<char> needed(const std::vector<int>& wanted) const;
   bool solve_adjoints(DesignGradient& result);
   void solve_shell_adjoints(DesignGradient& result);
+  shell::ShellGradient work_by_places(const Backward& backward,
+                                      std::size_t k) const;
   void through_shell(Backward& backward) const;
   double load_rate(const Backward& backward, std::size_t k,
                    const case_data::CaseRates& rates) const;
@@ -108,11 +111,18 @@ void Adjoint::solve_shell_adjoints(DesignGradient& result) {
       BackwardCase& back = backward.cases.emplace_back();
       back.load_case = partials.load_case;
       if (partials.self_adjoint != 0.0) {
-        back.lambda = partials.self_adjoint * solved.displacement;
+        back.lambda = partials.self_adjoint *
+                      (solved.joint ? solved.both : solved.displacement);
         back.adjoint_reactions = partials.self_adjoint * solved.reaction;
         continue;
       }
       VectorX right = partials.by_displacement;
+      if (solved.joint) {
+        back.lambda =
+            solved.joint->solve(shells::by_both(*in_.context.shell, right));
+        ++result.solves;
+        continue;
+      }
       if (right.size() != solved.displacement.size()) {
         right = shell::with_rotations(right);
       }
@@ -126,20 +136,37 @@ void Adjoint::solve_shell_adjoints(DesignGradient& result) {
   }
 }
 
+/// v . (f - K u) of its case k.
+shell::ShellGradient Adjoint::work_by_places(const Backward& backward,
+                                             std::size_t k) const {
+  const shells::ShellPart& shell = *in_.context.shell;
+  const BackwardCase& back = backward.cases[k];
+  const auto c = static_cast<std::size_t>(back.load_case);
+  const shells::ShellCase& own = shell.cases[c];
+  if (!own.joint) {
+    return shells::work_gradient(shell, c, back.lambda, own.displacement);
+  }
+  const responses::CasePartials& partials = backward.partials.cases[k];
+  const VectorX by_displacement =
+      partials.self_adjoint != 0.0
+          ? VectorX(partials.self_adjoint * own.forces)
+          : shells::by_both(shell, partials.by_displacement);
+  return shells::joint_gradient(shell, in_.context.inputs, c, back.lambda,
+                                by_displacement);
+}
+
 /// Nodes and thicknesses to the film's points and the thicknesses' numbers;
 /// layers.
 void Adjoint::through_shell(Backward& backward) const {
   const shells::ShellPart& shell = *in_.context.shell;
   responses::ResponsePartials& partials = backward.partials;
-  partials.by_nodes.resize(shell.mesh.nodes.size(), Vec3::Zero());
+  partials.by_nodes.resize(in_.context.mesh.nodes.size(), Vec3::Zero());
   partials.by_thickness.resize(shell.mesh.facets.size(), Vec3::Zero());
   add(partials.by_density, backward.by_density);
   add(partials.by_modulus, backward.by_modulus);
   add(partials.by_angle, backward.by_angle);
-  for (const BackwardCase& back : backward.cases) {
-    const auto c = static_cast<std::size_t>(back.load_case);
-    const shell::ShellGradient state = shells::work_gradient(
-        shell, c, back.lambda, shell.cases[c].displacement);
+  for (std::size_t k = 0; k < backward.cases.size(); ++k) {
+    const shell::ShellGradient state = work_by_places(backward, k);
     for (std::size_t i = 0; i < state.by_nodes.size(); ++i) {
       partials.by_nodes[i] += state.by_nodes[i];
     }
@@ -153,8 +180,18 @@ void Adjoint::through_shell(Backward& backward) const {
     add(layers.angle, backward.by_angle);
   }
   const shells::ShellModel& model = *in_.part.shells;
-  Points by_film =
-      model.to_film(partials.by_nodes, in_.context.film_state->points.size());
+  const auto first = partials.by_nodes.end() - std::ssize(shell.mesh.nodes);
+  Points by_film = model.to_film({first, partials.by_nodes.end()},
+                                 in_.context.film_state->points.size());
+  if (shell.solid) {
+    const Points by_solid =
+        in_.part
+            .to_surface(in_.context.inputs, in_.context.film_state->points,
+                        shell.solid->mesh, {partials.by_nodes.begin(), first})
+            .film;
+    std::transform(by_film.begin(), by_film.end(), by_solid.begin(),
+                   by_film.begin(), std::plus<>());
+  }
   if (partials.film.points.empty()) {
     partials.film.points = std::move(by_film);
   } else {
@@ -335,12 +372,15 @@ double Adjoint::load_rate(const Backward& backward, std::size_t k,
       by_forces.size() > 0) {
     v += by_forces;
   }
+  const shells::ShellPart& part = *in_.context.shell;
   const loads::LoadCase& load_case = load_case_of(back);
-  double rate =
-      shells::work_rate(*in_.context.shell, load_case, rates.load_cases[c], v);
+  const loads::LoadCase& by = rates.load_cases[c];
+  if (part.solid) {
+    return shells::joint_work_rate(part, load_case, by, v);
+  }
+  double rate = shells::work_rate(part, load_case, by, v);
   if (loads::enforces(load_case)) {
-    rate += shells::held_rate(*in_.context.shell, load_case,
-                              rates.load_cases[c], back.adjoint_reactions);
+    rate += shells::held_rate(part, load_case, by, back.adjoint_reactions);
   }
   return rate;
 }

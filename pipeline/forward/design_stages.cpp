@@ -11,6 +11,7 @@
 #include "pipeline/forward/frozen_part.h"
 #include "pipeline/forward/planes_kept.h"
 #include "pipeline/forward/walls.h"
+#include "pipeline/shells/joint_part.h"
 
 namespace meniscus::forward {
 
@@ -82,11 +83,17 @@ bool move_shell(const FrozenPart& part, StagedDesign& staged) {
   const StageMeter meter;
   Evaluation& result = staged.evaluation;
   EvaluationFields& fields = staged.fields;
-  fields.surface = part.shells->surface(staged.adjoint.film.points);
-  result.tet = figures_of(fields.surface);
   try {
-    fields.shell = part.shells->part(fields.inputs, staged.adjoint.film.points);
-    fields.mesh = fields.shell->skin;
+    fields.shell =
+        part.shell_part(fields.inputs, staged.adjoint.film.points, fields.mesh);
+    if (part.tie) {
+      result.tet = joint_figures(result.tet, fields.shell->mesh);
+      fields.mesh = shells::joint_mesh(fields.mesh, fields.shell->skin);
+    } else {
+      fields.surface = part.shells->surface(staged.adjoint.film.points);
+      result.tet = figures_of(fields.surface);
+      fields.mesh = fields.shell->skin;
+    }
   } catch (const InvalidInput& error) {  // a thickness that is not above 0
     result.failure = Failure{FailureKind::NotANumber, error.what()};
   } catch (const MeshError& error) {
@@ -96,12 +103,7 @@ bool move_shell(const FrozenPart& part, StagedDesign& staged) {
   return !result.failure;
 }
 
-}  // namespace
-
-bool move_mesh(const FrozenPart& part, StagedDesign& staged) {
-  if (part.shells) {
-    return move_shell(part, staged);
-  }
+bool move_solids(const FrozenPart& part, StagedDesign& staged) {
   Evaluation& result = staged.evaluation;
   const StageMeter meter;
   QuadraticSurface& surface = staged.fields.surface;
@@ -131,20 +133,34 @@ bool move_mesh(const FrozenPart& part, StagedDesign& staged) {
   return !result.failure;
 }
 
+equations::ElasticSolution solve_part(const FrozenPart& part,
+                                      KeepStiffness keep,
+                                      StagedDesign& staged) {
+  const case_data::EvaluatedCase& inputs = staged.fields.inputs;
+  if (part.shells) {
+    return (part.tie ? shells::solve_joint : shells::solve_shell)(
+        inputs, *staged.fields.shell);
+  }
+  return part.elasticity->solve(
+      staged.fields.mesh, inputs.load_cases, inputs.materials,
+      keep == KeepStiffness::Yes ? &staged.adjoint.elastic : nullptr);
+}
+
+}  // namespace
+
+bool move_mesh(const FrozenPart& part, StagedDesign& staged) {
+  const bool has_solids = !part.shells || part.tie;
+  return (!has_solids || move_solids(part, staged)) &&
+         (!part.shells || move_shell(part, staged));
+}
+
 bool solve_elasticity(const FrozenPart& part, KeepStiffness keep,
                       StagedDesign& staged) {
   Evaluation& result = staged.evaluation;
   const StageMeter meter;
   equations::ElasticSolution& solution = staged.fields.solution;
   try {
-    solution =
-        part.shells
-            ? shells::solve_shell(staged.fields.inputs, *staged.fields.shell)
-            : part.elasticity->solve(
-                  staged.fields.mesh, staged.fields.inputs.load_cases,
-                  staged.fields.inputs.materials,
-                  keep == KeepStiffness::Yes ? &staged.adjoint.elastic
-                                             : nullptr);
+    solution = solve_part(part, keep, staged);
   } catch (const InvalidInput& error) {
     // A load or support that this design's surface cannot take.
     result.failure = Failure{FailureKind::SolverFailed, error.what()};

@@ -13,10 +13,14 @@ using Json = nlohmann::ordered_json;
 }  // namespace
 
 nlohmann::ordered_json tet_json(const TetFigures& tet) {
-  return {{"nodes", tet.nodes},
-          {"elements", tet.elements},
-          {"min_dihedral_deg", tet.min_dihedral_deg},
-          {"max_dihedral_deg", tet.max_dihedral_deg}};
+  Json json = {{"nodes", tet.nodes},
+               {"elements", tet.elements},
+               {"min_dihedral_deg", tet.min_dihedral_deg},
+               {"max_dihedral_deg", tet.max_dihedral_deg}};
+  if (tet.facets > 0) {
+    json["shell_facets"] = tet.facets;
+  }
+  return json;
 }
 
 nlohmann::ordered_json fea_json(const equations::ElasticReport& fea) {

@@ -120,7 +120,7 @@ QuadraticSurface ForwardModel::surface(const case_data::EvaluatedCase& inputs,
 SurfaceMesh ForwardModel::boundary(const case_data::EvaluatedCase& inputs,
                                    const Points& film_points) const {
   const auto& walls = part_->walls;
-  if (part_->shells) {
+  if (part_->shells && !part_->tie) {
     return part_->shells->surface(film_points).base;
   }
   return walls ? walls->fine(film_points, walls->numbers(inputs.walls))

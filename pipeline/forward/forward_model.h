@@ -28,6 +28,7 @@ struct TetFigures {
   int elements = 0;
   double min_dihedral_deg = 0.0;  // of the straight-sided elements
   double max_dihedral_deg = 0.0;
+  int facets = 0;  // of shells beside these elements
 };
 
 /// What one design came to. `responses` stand in the case's order and are
@@ -74,7 +75,8 @@ struct EvaluationFields {
   QuadraticSurface surface;       // as meshed
   TetMesh mesh;                   // ten-node
   equations::ElasticSolution solution;
-  /// Of a case with shells, whose `mesh` has faces only; else null.
+  /// Of a case with shells, whose faces `mesh` has; of shells alone it has
+  /// nothing else. Else null.
   std::shared_ptr<shells::ShellPart> shell;
   responses::ResponseModes response_modes;  // that the responses take
   std::vector<PartStress> stresses;    // per load case; found once, at the end

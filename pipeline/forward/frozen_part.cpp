@@ -222,7 +222,7 @@ void freeze_shell_modes(const case_data::EvaluatedCase& inputs,
   }
   const StageMeter meter;
   const std::shared_ptr<shells::ShellPart> shell =
-      part.shells->part(inputs, part.film->reference().points);
+      part.shell_part(inputs, part.film->reference().points, {});
   const equations::ElasticSolution solution =
       shells::solve_shell(inputs, *shell);
   part.start.failure = solution.failure;
@@ -331,6 +331,22 @@ void freeze_shells(const case_data::EvaluatedCase& inputs, FrozenPart& part) {
   meter.add_to(part.start.seconds.mesh, part.start.operations.mesh);
 }
 
+/// Where shells' edges lie on the solids.
+bool tie_shells(const case_data::EvaluatedCase& inputs, FrozenPart& part) {
+  const StageMeter meter;
+  try {
+    const std::shared_ptr<shells::ShellPart> shell =
+        part.shells->part(inputs, part.film->reference().points);
+    part.tie = std::make_shared<joint::EdgeTie>(
+        joint::tie_edges(part.base_mesh, shell->mesh, shell->sections));
+    part.start.tet = joint_figures(part.start.tet, shell->mesh);
+  } catch (const InvalidInput& error) {
+    part.start.failure = Failure{FailureKind::SolverFailed, error.what()};
+  }
+  meter.add_to(part.start.seconds.mesh, part.start.operations.mesh);
+  return !part.start.failure;
+}
+
 Monitor& monitor_of(const ForwardModelOptions& options) {
   return options.monitor != nullptr ? *options.monitor : silent_monitor();
 }
@@ -343,12 +359,15 @@ bool fill_film(const case_data::EvaluatedCase& inputs,
   }
   if (!inputs.shells.empty()) {
     freeze_shells(inputs, part);
-    return true;
+    if (!case_data::has_solids(part.input)) {
+      return true;
+    }
   }
   if (!part.input.analysis.adapt) {  // else with the facets that err
     split_facets(tight_facets(inputs, part), part);
   }
-  return fill_surface(inputs, {.monitor = &monitor}, monitor, part);
+  return fill_surface(inputs, {.monitor = &monitor}, monitor, part) &&
+         (!part.shells || tie_shells(inputs, part));
 }
 
 /// Where the film is there and its facets make no sound surface: the same film
@@ -423,6 +442,12 @@ TetFigures figures_of(const QuadraticSurface& surface) {
           .elements = static_cast<int>(surface.base.facets.size())};
 }
 
+TetFigures joint_figures(TetFigures solid, const shell::ShellMesh& shell) {
+  solid.nodes += static_cast<int>(shell.nodes.size());
+  solid.facets = static_cast<int>(shell.facets.size());
+  return solid;
+}
+
 Points FrozenPart::rounded(const case_data::EvaluatedCase& inputs,
                            const Points& points) const {
   return fillets ? fillets->rounded(points, inputs.film_system) : points;
@@ -430,7 +455,7 @@ Points FrozenPart::rounded(const case_data::EvaluatedCase& inputs,
 
 QuadraticSurface FrozenPart::surface(const case_data::EvaluatedCase& inputs,
                                      const Points& points) const {
-  if (shells) {
+  if (shells && !case_data::has_solids(input)) {
     return shells->surface(points);
   }
   return walls ? walls->surface(points, walls->numbers(inputs.walls))
@@ -456,6 +481,20 @@ SurfaceGradient FrozenPart::to_surface(const case_data::EvaluatedCase& inputs,
   walls::WallGradient gradient = walls->transpose(
       points, walls->numbers(inputs.walls), by_corners, by.mid);
   return {std::move(gradient.film), std::move(gradient.thickness), VectorX()};
+}
+
+std::shared_ptr<shells::ShellPart> FrozenPart::shell_part(
+    const case_data::EvaluatedCase& inputs, const Points& points,
+    const TetMesh& solid) const {
+  std::shared_ptr<shells::ShellPart> part = shells->part(inputs, points);
+  if (tie) {
+    part->solid = {
+        .mesh = solid,
+        .materials = {inputs.materials.begin(),
+                      inputs.materials.end() - std::ssize(inputs.shells)},
+        .tie = tie};
+  }
+  return part;
 }
 
 responses::ResponseContext FrozenPart::context(

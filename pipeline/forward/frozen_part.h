@@ -2,11 +2,13 @@
 /// the chain (forward_model.cpp, design_stages.cpp, design_gradient.cpp).
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "evolve/fillets/fillet_model.h"
 #include "evolve/walls/wall_model.h"
+#include "fea/joint/edge_tie.h"
 #include "mesh_tet/mesh_motion.h"
 #include "mesh_tet/tet_quality.h"
 #include "mesh_tet/tetrahedralize.h"
@@ -20,6 +22,8 @@ namespace meniscus::forward {
 TetFigures figures_of(const TetMesh& mesh, const mesh_tet::TetQuality& quality);
 /// Of shells: their facets.
 TetFigures figures_of(const QuadraticSurface& surface);
+/// Of solids with the shells beside them.
+TetFigures joint_figures(TetFigures solid, const shell::ShellMesh& shell);
 
 /// Derivatives of a number by what makes the part's surface.
 struct SurfaceGradient {
@@ -38,11 +42,13 @@ struct FrozenPart {
   std::optional<frozen::FilmModel> film;
   std::optional<fillets::FilletModel> fillets;  // of a case that has some
   std::optional<walls::WallModel> walls;        // the same
-  std::optional<shells::ShellModel>
-      shells;         // the same; nothing below is then there
+  std::optional<shells::ShellModel> shells;     // the same
+  // Of the solids; nothing of it is there in a case of shells alone, and beside
+  // shells nothing below `motion` but the tie:
   TetMesh base_mesh;  // ten-node, at the initial design
   std::vector<char> curve_edge;
   std::optional<mesh_tet::MeshMotion> motion;
+  std::shared_ptr<const joint::EdgeTie> tie;  // of shells to these
   std::optional<elastic::ElasticModel> elasticity;
   responses::ResponseModes base_modes;  // of the initial design
   Exclusion exclusion;
@@ -53,13 +59,20 @@ struct FrozenPart {
   /// Points of the film, of the design of `inputs`, with the fillets.
   Points rounded(const case_data::EvaluatedCase& inputs,
                  const Points& points) const;
-  /// The surface as meshed, on the film `points` of the design of `inputs`.
+  /// The solids' surface as meshed, or of shells alone theirs, on the film
+  /// `points` of the design of `inputs`.
   QuadraticSurface surface(const case_data::EvaluatedCase& inputs,
                            const Points& points) const;
   /// Its transpose: from a gradient by all nodes of the mesh.
   SurfaceGradient to_surface(const case_data::EvaluatedCase& inputs,
                              const Points& points, const TetMesh& mesh,
                              const Points& by_nodes) const;
+  /// Shells and, beside them, solids of a design on its film, without
+  /// solutions; `solid` is empty where there are none. Throws as
+  /// shells::ShellModel::part().
+  std::shared_ptr<shells::ShellPart> shell_part(
+      const case_data::EvaluatedCase& inputs, const Points& points,
+      const TetMesh& solid) const;
   /// What the responses of a design look at, on loan.
   responses::ResponseContext context(
       const case_data::EvaluatedCase& inputs,

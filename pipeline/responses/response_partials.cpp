@@ -17,6 +17,7 @@
 #include "fea/loads/body_loads.h"
 #include "fea/modes/eigenvalue_functionals.h"
 #include "fea/stress/peak_stress.h"
+#include "pipeline/shells/joint_part.h"
 
 namespace meniscus::responses {
 
@@ -84,8 +85,11 @@ const std::vector<element::Material>& materials(const ResponseTask& task) {
 
 /// Of a shell, both sides of a film are its facets.
 std::string surface_of(const ResponseTask& task) {
-  return task.fields.shell != nullptr ? shells::film_of(task.response.surface)
-                                      : task.response.surface;
+  const std::string& surface = task.response.surface;
+  return task.fields.shell != nullptr &&
+                 shells::is_of_shells(*task.fields.shell, surface)
+             ? shells::film_of(surface)
+             : surface;
 }
 
 ResponsePartials mean_displacement(const ResponseTask& task) {
@@ -387,17 +391,9 @@ ResponsePartials scan_distance(const ResponseTask& task) {
                     task.response.measure, points.size()));
 }
 
-/// Of the part that the case draws.
-ResponsePartials of_drawn_part(const ResponseTask& task) {
+/// As solids have it, and shells what has to do with faces and films alone.
+ResponsePartials of_solids(const ResponseTask& task) {
   using Kind = case_data::ResponseKind;
-  if (task.response.worst_in) {
-    return worst_partials(task);
-  }
-  if (task.fields.shell != nullptr) {
-    if (std::optional<ResponsePartials> own = shell_partials(task)) {
-      return *std::move(own);
-    }
-  }
   switch (task.response.kind) {
     case Kind::MeanDisplacement:
       return mean_displacement(task);
@@ -462,6 +458,33 @@ ResponsePartials of_drawn_part(const ResponseTask& task) {
       break;  // of the responses above it
   }
   return {};
+}
+
+/// Adds a response of the mesh alone.
+void add_of_mesh(const ResponsePartials& more, ResponsePartials& sum) {
+  sum.value += more.value;
+  for (std::size_t i = 0; i < more.by_nodes.size(); ++i) {  // none: not asked
+    sum.by_nodes[i] += more.by_nodes[i];
+  }
+}
+
+/// Of the part that the case draws.
+ResponsePartials of_drawn_part(const ResponseTask& task) {
+  using Kind = case_data::ResponseKind;
+  if (task.response.worst_in) {
+    return worst_partials(task);
+  }
+  const shells::ShellPart* shell = task.fields.shell;
+  std::optional<ResponsePartials> own =
+      shell != nullptr ? shell_partials(task) : std::nullopt;
+  if (!own) {
+    return of_solids(task);
+  }
+  if (shell->solid && (task.response.kind == Kind::Mass ||
+                       task.response.kind == Kind::Volume)) {
+    add_of_mesh(of_solids(task), *own);
+  }
+  return *std::move(own);
 }
 
 template <class Items>

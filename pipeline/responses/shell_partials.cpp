@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
@@ -5,8 +6,9 @@
 #include "fea/shell/shell_moments.h"
 #include "fea/shell/shell_norm.h"
 #include "fea/shell_modes/shell_mode_works.h"
+#include "fea/stress/peak_stress.h"
 #include "pipeline/responses/response_partials.h"
-#include "pipeline/shells/shell_part.h"
+#include "pipeline/shells/joint_part.h"
 
 namespace meniscus::responses {
 
@@ -30,6 +32,7 @@ ResponsePartials enforced_energy(const ResponseTask& task,
   ResponsePartials result;
   if (task.derivatives == element::Derivatives::All) {
     result = shell_to_partials(
+        part,
         shell::residual_gradient(part.mesh, part.sections, {}, -0.5 * u, u));
     result.cases.push_back({.load_case = task.response.load_case,
                             .by_displacement = inner,
@@ -45,9 +48,11 @@ ResponsePartials shell_energy(const ResponseTask& task) {
   const auto load_case = static_cast<std::size_t>(task.response.load_case);
   const shells::ShellPart& part = *task.fields.shell;
   const shells::ShellCase& own = part.cases[load_case];
-  const VectorX& u = own.displacement;
+  const VectorX& u = part.solid ? own.both : own.displacement;
   const VectorX forces =
-      shell::nodal_forces(part.mesh, part.sections, own.actions.loads);
+      part.solid
+          ? own.forces
+          : shell::nodal_forces(part.mesh, part.sections, own.actions.loads);
   const bool strain =
       task.response.kind == case_data::ResponseKind::StrainEnergy;
   const bool enforced =
@@ -58,9 +63,11 @@ ResponsePartials shell_energy(const ResponseTask& task) {
   const double share = strain ? 0.5 : 1.0;
   ResponsePartials result;
   if (task.derivatives == element::Derivatives::All) {
-    result = shell_to_partials(part,
-                               shells::work_gradient(part, load_case, share * u,
-                                                     VectorX::Zero(u.size())));
+    result = shell_to_partials(
+        part, part.solid ? shells::joint_force_gradient(
+                               part, task.fields.inputs, load_case, share * u)
+                         : shells::work_gradient(part, load_case, share * u,
+                                                 VectorX::Zero(u.size())));
     result.cases.push_back({.load_case = task.response.load_case,
                             .by_displacement = share * forces,
                             .self_adjoint = enforced ? 0.0 : share,
@@ -140,8 +147,9 @@ ResponsePartials mean_on_rim(const ResponseTask& task) {
       part.mesh, shells::rim_of(part, task.response.surface),
       task.inputs.direction, part.cases[load_case].displacement);
   ResponsePartials result;
-  result.value = mean.value;
-  result.by_nodes = std::move(mean.by_nodes);
+  result = shell_to_partials(part, {.value = mean.value,
+                                    .by_nodes = std::move(mean.by_nodes),
+                                    .by_thickness = {}});
   result.by_direction = mean.by_direction;
   result.cases.push_back({.load_case = task.response.load_case,
                           .by_displacement = std::move(mean.by_displacement),
@@ -158,10 +166,15 @@ ResponsePartials shell_peak_stress(const ResponseTask& task) {
         task.response.name));
   }
   const shells::ShellPart& part = *task.fields.shell;
+  const auto load_case = static_cast<std::size_t>(task.response.load_case);
   ResponsePartials result;
-  result.value = shells::shell_peak(
-                     part, static_cast<std::size_t>(task.response.load_case))
-                     .von_mises;
+  result.value = shells::shell_peak(part, load_case).von_mises;
+  if (part.solid) {
+    result.value = std::max(
+        result.value, stress::peak_of(part.solid->mesh,
+                                      shells::solid_stress(part, load_case), {})
+                          .von_mises);
+  }
   return result;
 }
 
@@ -228,6 +241,11 @@ ResponsePartials shell_to_partials(const shells::ShellPart& part,
                                    shell::ShellGradient gradient) {
   ResponsePartials result;
   add_layers(part, gradient.by_ply, result);
+  // Its nodes stand behind those of solids.
+  if (part.solid && gradient.by_nodes.size() == part.mesh.nodes.size()) {
+    gradient.by_nodes.insert(gradient.by_nodes.begin(),
+                             part.solid->mesh.nodes.size(), Vec3::Zero());
+  }
   result.value = gradient.value;
   result.by_nodes = std::move(gradient.by_nodes);
   result.by_thickness = std::move(gradient.by_thickness);

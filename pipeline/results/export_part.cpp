@@ -245,6 +245,13 @@ const ExportFormat& format_named(const std::string& name) {
 
 /// CAD's solids are films or walls.
 void refuse_shells(const case_data::Case& input, const ExportFormat& format) {
+  if (!input.shells.empty() && case_data::has_solids(input) &&
+      format.write != fe) {
+    throw InvalidInput(fmt::format(
+        "format '{}' cannot yet hold shells.{} beside solid bodies; take "
+        "part.vtu and the STL file of the run, or [walls] in place of [shells]",
+        format.name, input.shells.front().name));
+  }
   if (!input.shells.empty() &&
       (format.write == smooth_step || format.write == faceted_step)) {
     throw InvalidInput(fmt::format(

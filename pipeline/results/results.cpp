@@ -107,6 +107,18 @@ io::Field shell_field(const case_data::Case& input, const std::string& name,
       .name = name, .unit = input.units.pressure, .values = std::move(values)};
 }
 
+/// Numbers of the shell's nodes behind those of the solids beside it.
+std::vector<double> behind_solids(const shells::ShellPart& part,
+                                  std::vector<double> solid,
+                                  const std::vector<double>& shell) {
+  if (part.solid) {
+    solid.resize(shell.size() / part.mesh.nodes.size() *
+                 part.solid->mesh.nodes.size());
+  }
+  solid.insert(solid.end(), shell.begin(), shell.end());
+  return solid;
+}
+
 /// Displacement, rotation and stresses of a load case; von_mises is the largest
 /// of both faces and the middle.
 void add_shell_fields(const case_data::Case& input,
@@ -120,20 +132,31 @@ void add_shell_fields(const case_data::Case& input,
                                   static_cast<std::size_t>(u.size())));
   const VectorX turned =
       shell::rotations_of(part.cases[load_case].displacement);
-  out.points.push_back(node_field("rotation" + ending, "rad", 3, turned.data(),
-                                  static_cast<std::size_t>(turned.size())));
+  const std::vector<double> turns =
+      behind_solids(part, {}, {turned.begin(), turned.end()});
+  out.points.push_back(
+      node_field("rotation" + ending, "rad", 3, turns.data(), turns.size()));
+  std::vector<double> of_solid;
+  if (part.solid) {
+    of_solid = stress::nodal_stress(part.solid->mesh,
+                                    part.cases[load_case].solid_stress)
+                   .von_mises;
+  }
   using W = shell::WallStress;
   for (const auto& [name, height] :
        {std::pair("back", &W::negative), std::pair("middle", &W::middle),
         std::pair("front", &W::positive)}) {
-    out.points.push_back(
-        shell_field(input, std::string(name) + "_von_mises" + ending,
-                    shells::nodal_von_mises(part, load_case, {height})));
+    out.points.push_back(shell_field(
+        input, std::string(name) + "_von_mises" + ending,
+        behind_solids(part, of_solid,
+                      shells::nodal_von_mises(part, load_case, {height}))));
   }
   out.points.push_back(shell_field(
       input, "von_mises" + ending,
-      shells::nodal_von_mises(part, load_case,
-                              {&W::negative, &W::middle, &W::positive})));
+      behind_solids(
+          part, of_solid,
+          shells::nodal_von_mises(part, load_case,
+                                  {&W::negative, &W::middle, &W::positive}))));
 }
 
 /// Mean over the facets at each node, linear along edges.
@@ -193,7 +216,9 @@ io::MeshFields part_fields(const case_data::Case& input,
                                                             ending, to);
       });
   if (fields.shell) {
-    out.points.push_back(thickness_field(input, fields.shell->mesh));
+    io::Field thickness = thickness_field(input, fields.shell->mesh);
+    thickness.values = behind_solids(*fields.shell, {}, thickness.values);
+    out.points.push_back(std::move(thickness));
   }
   for (const forward::ModeShape& mode : fields.modes) {
     out.points.push_back(
@@ -233,12 +258,13 @@ io::MeshFields body_fields(const case_data::Case& input,
   return out;
 }
 
-/// The boundary of the part, or of the body that a shell stands for.
+/// The boundary of the part, of shells beside solids their facets; or of the
+/// body that a shell stands for.
 void write_surface(const std::filesystem::path& file,
                    const case_data::Case& input,
                    const forward::EvaluationFields& fields,
                    const std::string& load_case = "") {
-  if (fields.shell) {
+  if (fields.shell && !fields.shell->solid) {
     const shells::ShellBody body = shells::shell_body(*fields.shell);
     io::write_boundary_vtp(file, body.mesh,
                            body_fields(input, fields, body, load_case));
@@ -441,7 +467,7 @@ nlohmann::ordered_json result_json(const case_data::Case& input,
     if (!best->film.popped.empty()) {
       json["popped"] = forward::popped_json(best->film);
     }
-    if (input.shells.empty()) {
+    if (input.shells.empty() || case_data::has_solids(input)) {
       json["tet"] = forward::tet_json(best->tet);
     } else {
       json["shell"] = {{"nodes", best->tet.nodes},
@@ -541,7 +567,7 @@ std::vector<std::string> write_meshes(const case_data::Case& input,
   };
   if (input.resolution.export_edges.empty()) {
     write_part_stl(fields.shell
-                       ? shells::body_surface(shells::shell_body(*fields.shell))
+                       ? shells::part_surface(*fields.shell, fields.boundary)
                        : fields.boundary,
                    input.resolution.film);
   }

@@ -172,6 +172,11 @@ std::string counts_text(const study::RunResult& result) {
 
 std::string elements_text(const case_data::Case& input,
                           const forward::Evaluation& best) {
+  if (best.tet.facets > 0) {
+    return fmt::format(
+        "{} ten-node tetrahedra and {} six-node facets of shells, {} unknowns",
+        best.tet.elements, best.tet.facets, best.fea.dofs);
+  }
   return input.shells.empty()
              ? fmt::format(
                    "{} ten-node tetrahedra, {} unknowns, dihedral "

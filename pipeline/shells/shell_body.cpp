@@ -230,4 +230,31 @@ SurfaceMesh body_surface(const ShellBody& body) {
   return surface;
 }
 
+SurfaceMesh part_surface(const ShellPart& part, SurfaceMesh solids) {
+  SurfaceMesh walls = body_surface(shell_body(part));
+  if (!part.solid) {
+    return walls;
+  }
+  if (solids.facet_bodies.empty()) {
+    solids.facet_bodies.resize(solids.facets.size());
+  }
+  const auto points = static_cast<int>(solids.points.size());
+  const auto labels = static_cast<int>(solids.labels.size());
+  const int bodies = body_count(solids);
+  solids.points.insert(solids.points.end(), walls.points.begin(),
+                       walls.points.end());
+  solids.labels.insert(solids.labels.end(), walls.labels.begin(),
+                       walls.labels.end());
+  for (std::size_t f = 0; f < walls.facets.size(); ++f) {
+    Triangle& facet = solids.facets.emplace_back(walls.facets[f]);
+    for (int& point : facet) {
+      point += points;
+    }
+    solids.facet_label.push_back(labels + walls.facet_label[f]);
+    solids.facet_bodies.push_back(
+        {bodies + body_of_side(walls, static_cast<int>(2 * f)), -1});
+  }
+  return solids;
+}
+
 }  // namespace meniscus::shells

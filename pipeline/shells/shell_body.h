@@ -45,4 +45,8 @@ std::vector<std::string> body_names(const ShellPart& part);
 /// As a surface of bodies, one a film, each face cut in four.
 SurfaceMesh body_surface(const ShellBody& body);
 
+/// The bodies of the part's walls, behind the boundary of the solids where it
+/// has some.
+SurfaceMesh part_surface(const ShellPart& part, SurfaceMesh solids);
+
 }  // namespace meniscus::shells

@@ -8,6 +8,7 @@
 #include "pipeline/case_data/case_symmetry.h"
 #include "pipeline/case_data/case_values.h"
 #include "pipeline/case_data/response_kinds.h"
+#include "pipeline/shells/joint_checks.h"
 #include "pipeline/shells/shell_part.h"
 
 namespace meniscus::shells {
@@ -70,17 +71,6 @@ class ShellChecks {
                                 "one",
                                 first.name, input_.walls.front().name));
     }
-    for (const case_data::BodyEntry& body : input_.bodies) {
-      if (body.material != case_data::kVoid) {
-        problems_.add(
-            first.line,
-            fmt::format("shells.{} stands beside bodies.{}, which is solid; a "
-                        "run analyses shells or bodies: make the body's "
-                        "material \"void\", so that it only shapes its films, "
-                        "or take [shells] out",
-                        first.name, body.name));
-      }
-    }
     if (!input_.fillets.empty()) {
       problems_.add(input_.fillets.front().line,
                     fmt::format("fillets.{} stands beside shells.{}, whose "
@@ -118,6 +108,9 @@ class ShellChecks {
                                       load_case.name, what));
     };
     for (const case_data::SupportEntry& support : load_case.supports) {
+      if (!is_on_shells(input_, support.support.surface)) {
+        continue;
+      }
       const std::vector<std::string> ends = case_data::cut_faces(input_);
       const bool is_end =
           std::count(ends.begin(), ends.end(), support.support.surface) > 0;
@@ -127,7 +120,10 @@ class ShellChecks {
         refuse(support.line, "a support at a point that follows the design");
       }
     }
-    if (!load_case.springs.empty()) {
+    if (std::any_of(load_case.springs.begin(), load_case.springs.end(),
+                    [&](const loads::SpringBed& bed) {
+                      return is_on_shells(input_, bed.surface);
+                    })) {
       refuse(load_case.line, "springs");
     }
     if (!load_case.pins.empty()) {
@@ -143,6 +139,10 @@ class ShellChecks {
                                 "know; {}",
                                 load_case.name, what, instead));
     };
+    if (!load.surfaces.empty() &&
+        !is_on_shells(input_, load.surfaces.front())) {
+      return;
+    }
     const auto rims =
         std::count_if(load.surfaces.begin(), load.surfaces.end(), is_rim);
     const bool on_rim = rims > 0;
@@ -313,6 +313,9 @@ void check_shells(const case_data::Case& input,
                   case_data::CaseProblems& problems) {
   if (!input.shells.empty()) {
     ShellChecks(input, problems).check();
+    if (case_data::has_solids(input)) {
+      check_joint(input, problems);
+    }
   }
 }
 

@@ -213,7 +213,12 @@ std::shared_ptr<ShellPart> ShellModel::part(
                        reference_[nodes_.mesh.facets[f][k]]);
     }
   }
-  std::size_t layer = 0;
+  // Those of bodies stand before them.
+  std::size_t layer = inputs.materials.size();
+  for (const std::vector<double>& shares : shares_) {
+    layer -= shares.size();
+  }
+  part->first_layer = static_cast<int>(layer);
   for (std::size_t s = 0; s < inputs.shells.size(); ++s) {
     shell::Section& section = part->sections.emplace_back();
     section.offset = offset_of(inputs.shells[s].side);

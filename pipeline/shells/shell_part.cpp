@@ -256,10 +256,10 @@ std::vector<shell::FacetStress> shell_stresses(const ShellPart& part,
                                      own.actions.loads, own.displacement));
 }
 
-std::vector<int> first_layers(const std::vector<shell::Section>& sections) {
+std::vector<int> first_layers(const ShellPart& part) {
   std::vector<int> first;
-  int next = 0;
-  for (const shell::Section& section : sections) {
+  int next = part.first_layer;
+  for (const shell::Section& section : part.sections) {
     first.push_back(next);
     next += static_cast<int>(section.laminate.plies.size());
   }
@@ -268,7 +268,9 @@ std::vector<int> first_layers(const std::vector<shell::Section>& sections) {
 
 LayerGradient layer_gradient(const ShellPart& part,
                              const shell::PlyGradients& by_ply) {
-  LayerGradient result;
+  const std::vector<double> of_solids(
+      static_cast<std::size_t>(part.first_layer), 0.0);
+  LayerGradient result{of_solids, of_solids, of_solids};
   for (std::size_t s = 0; s < part.sections.size(); ++s) {
     for (std::size_t p = 0; p < part.sections[s].laminate.plies.size(); ++p) {
       const shell::PlyGradient own = s < by_ply.size() && p < by_ply[s].size()
@@ -287,7 +289,7 @@ void visit_nodal_stresses(
     const std::function<void(int facet, int node, int layer,
                              const element::Stress& stress)>& visit) {
   const ShellCase& own = part.cases[load_case];
-  const std::vector<int> first = first_layers(part.sections);
+  const std::vector<int> first = first_layers(part);
   shell::visit_ply_stresses(
       part.mesh, part.sections, own.actions.loads, own.displacement,
       [&](int ply, const std::vector<shell::FacetStress>& stress) {

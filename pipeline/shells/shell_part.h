@@ -4,16 +4,20 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/geometry/tet_mesh.h"
+#include "fea/joint/edge_tie.h"
+#include "fea/joint/joint_system.h"
 #include "fea/loads/load_case.h"
 #include "fea/shell/shell_gradient.h"
 #include "fea/shell/shell_lines.h"
 #include "fea/shell/shell_stress.h"
 #include "fea/shell/shell_system.h"
 #include "fea/shell_actions/line_load.h"
+#include "fea/stress/patch_recovery.h"
 
 namespace meniscus::shells {
 
@@ -29,7 +33,19 @@ struct ShellCase {
   std::shared_ptr<const shell::ShellSystem> system;  // of cases held alike
   VectorX displacement;                              // 6 per node
   VectorX reaction;                                  // the same: K u - f
+  // Beside solids, in the place of `system` (joint_part.h):
+  std::shared_ptr<const joint::JointSystem> joint;
+  VectorX both, forces;     // displacements and forces of solids and shells
+  VectorX solid_reactions;  // 3 per node of the solids
+  stress::RecoveredStress solid_stress;    // as `stress`
   std::vector<shell::FacetStress> stress;  // means at nodes; once, at the end
+};
+
+/// The solids that shells stand on.
+struct SolidPart {
+  TetMesh mesh;
+  std::vector<element::Material> materials;   // one per region
+  std::shared_ptr<const joint::EdgeTie> tie;  // frozen with the model
 };
 
 /// Systems refer to mesh and sections: it stays where it was made.
@@ -43,11 +59,13 @@ struct ShellPart {
   TetMesh skin;   // no elements: its nodes, and its facets as faces with the
                   // films' names
   Points frozen;  // places of the corners, its first nodes, at the freeze
-  std::vector<shell::Section> sections;     // one per shell of the case, of its
-                                            // layers
+  std::vector<shell::Section> sections;  // one per shell of the case, of its
+                                         // layers
+  int first_layer = 0;                   // of these, among the case's materials
   std::map<std::string, shell::Line> rims;  // "FILM/rim:CURVE", and those in
                                             // planes: "FILM/symmetry_1"
   std::map<std::string, Vec3> planes;       // of these: the unit normals
+  std::optional<SolidPart> solid;           // of a case with both
   std::vector<ShellCase> cases;             // per load case
 };
 
@@ -83,10 +101,10 @@ double work_rate(const ShellPart& part, const loads::LoadCase& load_case,
 std::vector<shell::FacetStress> shell_stresses(const ShellPart& part,
                                                std::size_t load_case);
 
-/// Index of each section's first layer among those of all.
-std::vector<int> first_layers(const std::vector<shell::Section>& sections);
+/// Index of each section's first layer among the case's materials.
+std::vector<int> first_layers(const ShellPart& part);
 
-/// Per layer, as shell::PlyGradient.
+/// Per material of the case, as shell::PlyGradient; of solids 0.
 struct LayerGradient {
   std::vector<double> modulus, density, angle;
 };
@@ -95,7 +113,7 @@ LayerGradient layer_gradient(const ShellPart& part,
 
 /// visit(facet, node, layer, stress) of a solved load case at the nodes of all
 /// facets, means as of shell_stresses(): at both faces of each layer and half
-/// way between, `node` from 0 to 5, `layer` among those of all sections.
+/// way between, `node` from 0 to 5, `layer` among the case's materials.
 void visit_nodal_stresses(
     const ShellPart& part, std::size_t load_case,
     const std::function<void(int facet, int node, int layer,

@@ -925,7 +925,7 @@ constraints = [{ response = "stable", min = 1.5 }]
             ("fea = 8", "fea = 8\nfilm = 8", "resolution.film is as long"),
             ("buckling = 0", "adapt = true", "analysis.adapt is of solids"),
             ('material = "void"', 'material = "steel"',
-             "shells.tube stands beside bodies.gas, which is solid"),
+             "shells.tube is of film 'skin', which encloses the solid bodies.gas"),
             ('"skin/rim:high", fix', '"skin/rim:hihg", fix',
              "there is no surface 'skin/rim:hihg'"),
         ]

@@ -1,0 +1,34 @@
+/// The stiffness of a shell, facet by facet.
+#pragma once
+
+#include <vector>
+
+#include "fea/shell/facet_matrices.h"
+#include "fea/shell/shell_mesh.h"
+
+namespace meniscus::shell {
+
+/// Mesh and sections are kept by reference.
+class ShellStiffness {
+ public:
+  /// Throws MeshError and InvalidInput as check_shell() and laminate_law() do.
+  ShellStiffness(const ShellMesh& mesh, const std::vector<Section>& sections,
+                 const FacetRule& rule = facet_rule());
+
+  /// Of one facet, without its bubble.
+  FacetMatrix of(int facet) const;
+  /// K u, 6 per node: what holds the shell in u. The same bits for any number
+  /// of threads.
+  VectorX times(const VectorX& u) const;
+
+  /// One per section.
+  const std::vector<LaminateLaw>& laws() const { return laws_; }
+
+ private:
+  const ShellMesh& mesh_;
+  const std::vector<Section>& sections_;
+  const FacetRule& rule_;
+  std::vector<LaminateLaw> laws_;
+};
+
+}  // namespace meniscus::shell
