@@ -488,11 +488,10 @@ std::shared_ptr<shells::ShellPart> FrozenPart::shell_part(
     const TetMesh& solid) const {
   std::shared_ptr<shells::ShellPart> part = shells->part(inputs, points);
   if (tie) {
-    part->solid = {
-        .mesh = solid,
-        .materials = {inputs.materials.begin(),
-                      inputs.materials.end() - std::ssize(inputs.shells)},
-        .tie = tie};
+    part->solid = {.mesh = solid,
+                   .materials = {inputs.materials.begin(),
+                                 inputs.materials.begin() + part->first_layer},
+                   .tie = tie};
   }
   return part;
 }

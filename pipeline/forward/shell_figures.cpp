@@ -1,6 +1,8 @@
 #include "pipeline/forward/shell_figures.h"
 
 #include "fea/element/stress_measures.h"
+#include "fea/stress/peak_stress.h"
+#include "pipeline/shells/joint_part.h"
 
 namespace meniscus::forward {
 
