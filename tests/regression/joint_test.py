@@ -312,7 +312,9 @@ class JointTest(ProgramTest):
              "responses.volume"),
             ('on = "base/left", fix = "xyz" }', 'on = "plate/rim:end", '
              'fix = "xyz", displacement = [1, 0, 0] }',
-             "an enforced displacement"),
+             "an enforced displacement cannot yet"),
+            ('{ on = "base/top", force = [0, 1, "-3 * load"] }',
+             '{ temperature = 50 }', "a temperature cannot yet"),
             ('on = "base/left", fix = "xyz" }', 'on = "base/left", '
              'fix = "xyz", displacement = [1, 0, 0] }',
              "an enforced displacement cannot yet"),
@@ -323,7 +325,7 @@ class JointTest(ProgramTest):
              '{ on = ["base/top", "plate"], force = [0, 1, 0] }',
              "a load on both together cannot yet"),
             ('youngs_modulus = 1000', 'youngs_modulus = "100 * out"',
-             "'model' follows the design"),
+             "'model', which follows the design, cannot yet"),
             ("buckling = 0", "buckling = 0\nadapt = true",
              "analysis.adapt is of solids"),
         ]
