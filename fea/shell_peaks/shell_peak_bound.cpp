@@ -171,14 +171,14 @@ struct FacetPeakGradient : FacetGradient {
 };
 
 /// One facet under one state.
-struct SolvedFacet {
+struct LoadedFacet {
   Facet facet;
   WallState state;
   FacetField field;
   Eigen::Vector2d bubble;
 };
 
-FacetPeakGradient facet_gradient(const SolvedFacet& solved,
+FacetPeakGradient facet_gradient(const LoadedFacet& solved,
                                  const FacetTensors& tensors, Tape& tape) {
   const Facet& facet = solved.facet;
   FacetPeakGradient gradient;
