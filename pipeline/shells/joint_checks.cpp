@@ -75,7 +75,9 @@ class JointChecks {
                 shell.line,
                 fmt::format("shells.{} is of film '{}', which encloses the "
                             "solid bodies.{}; a film is a wall or bounds a "
-                            "solid: take it out of one of them",
+                            "solid: make the body's material \"void\", so that "
+                            "it only shapes its films, or take the film out "
+                            "of one of them",
                             shell.name, film, body.name));
           }
         }
