@@ -15,6 +15,7 @@
 #include "fea/joint/tie_motion.h"
 #include "fea/shell/facet_rule.h"
 #include "fea/shell/facet_strain.h"
+#include "fea/shell/shell_loads.h"
 
 namespace meniscus::joint {
 
@@ -53,10 +54,9 @@ class SolidFaces {
     TiePoint result{.weight = weight};
     const auto face = solid_.face(faces_of(found.facet));
     std::copy(face.begin(), face.end(), result.nodes.begin());
-    for (int c = 0; c < 3; ++c) {
-      result.shape[c] = L[c] * (2.0 * L[c] - 1.0);
-      result.shape[3 + c] = 4.0 * L[c] * L[(c + 1) % 3];
-    }
+    const shell::FacetPoint functions = shell::facet_functions(L[1], L[2]);
+    std::copy_n(functions.shape.begin(), result.shape.size(),
+                result.shape.begin());
     return result;
   }
 
@@ -99,41 +99,26 @@ class SolidFaces {
   FacetTree tree_;
 };
 
-/// Functions of an edge's nodes, from, to, middle.
-Vec3 edge_shapes(double s) {
-  return {(1.0 - s) * (1.0 - 2.0 * s), s * (2.0 * s - 1.0),
-          4.0 * s * (1.0 - s)};
-}
-
-/// Theirs, too, but the integral of one times an edge function is 0 for all
-/// but its own, and of that the function's integral.
+/// As shell::edge_shapes(), but the integral of one times an edge function is 0
+/// for all but its own, and of that the function's integral.
 Vec3 dual_shapes(double s) {
   Mat3 M;
   M << 4, -1, 2, -1, 4, 2, 2, 2, 16;
   const Vec3 integral(1.0 / 6.0, 1.0 / 6.0, 2.0 / 3.0);
-  return integral.asDiagonal() * (M / 30.0).inverse() * edge_shapes(s);
+  return integral.asDiagonal() * (M / 30.0).inverse() * shell::edge_shapes(s);
 }
 
-/// One edge of a facet, from corner `side` to the next.
-struct FacetEdge {
-  int facet = 0;
-  int side = 0;
-  std::array<int, 3> nodes = {};  // from, to, middle
-};
-
-FacetEdge edge_of(const shell::ShellMesh& mesh, int facet, int side) {
-  const auto& nodes = mesh.facets[facet];
-  return {facet, side, {nodes[side], nodes[(side + 1) % 3], nodes[3 + side]}};
-}
+using shell::FacetEdge;
 
 double thickness_on(const shell::ShellMesh& mesh, const FacetEdge& edge,
                     double s) {
   const Vec3& t = mesh.thickness[edge.facet];
-  return (1.0 - s) * t[edge.side] + s * t[(edge.side + 1) % 3];
+  return (1.0 - s) * t[edge.edge] + s * t[(edge.edge + 1) % 3];
 }
 
 double length_of(const shell::ShellMesh& mesh, const FacetEdge& edge) {
-  return (mesh.nodes[edge.nodes[1]] - mesh.nodes[edge.nodes[0]]).norm();
+  const auto [from, to, middle] = shell::edge_nodes(mesh, edge);
+  return (mesh.nodes[to] - mesh.nodes[from]).norm();
 }
 
 std::vector<FacetEdge> edges_on(const SolidFaces& faces,
@@ -146,11 +131,12 @@ std::vector<FacetEdge> edges_on(const SolidFaces& faces,
   std::vector<FacetEdge> edges;
   for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
     for (int side = 0; side < 3; ++side) {
-      const FacetEdge edge = edge_of(mesh, static_cast<int>(f), side);
+      const FacetEdge edge{static_cast<int>(f), side};
+      const std::array<int, 3> nodes = shell::edge_nodes(mesh, edge);
       // Edges that only begin there leave it by their length.
       const double most = kTouches * std::min(thickness_on(mesh, edge, 0.5),
                                               length_of(mesh, edge));
-      if (std::all_of(edge.nodes.begin(), edge.nodes.end(),
+      if (std::all_of(nodes.begin(), nodes.end(),
                       [&](int node) { return away[node] <= most; })) {
         edges.push_back(edge);
       }
@@ -163,8 +149,8 @@ std::vector<FacetEdge> edges_on(const SolidFaces& faces,
 Fibre fibre_at(const SolidFaces& faces, const shell::ShellMesh& mesh,
                const FacetEdge& edge, double offset, double s) {
   Vec3 corners = Vec3::Zero();
-  corners[edge.side] = 1.0 - s;
-  corners[(edge.side + 1) % 3] = s;
+  corners[edge.edge] = 1.0 - s;
+  corners[(edge.edge + 1) % 3] = s;
   std::array<shell::Triple<double>, shell::kNodes> X{};
   for (int k = 0; k < shell::kNodes; ++k) {
     const Vec3& node = mesh.nodes[mesh.facets[edge.facet][k]];
@@ -174,9 +160,10 @@ Fibre fibre_at(const SolidFaces& faces, const shell::ShellMesh& mesh,
   const Vec3 normal =
       shell::as_vector(shell::facet_frame(X, at, nullptr).axes[2]);
   Vec3 middle = Vec3::Zero();
-  const Vec3 shapes = edge_shapes(s);
+  const std::array<int, 3> nodes = shell::edge_nodes(mesh, edge);
+  const Vec3 shapes = shell::edge_shapes(s);
   for (int k = 0; k < 3; ++k) {
-    middle += shapes[k] * mesh.nodes[edge.nodes[k]];
+    middle += shapes[k] * mesh.nodes[nodes[k]];
   }
   const double thickness = thickness_on(mesh, edge, s);
   Fibre fibre;
@@ -214,6 +201,7 @@ EdgeTie tie_edges(const TetMesh& solid, const shell::ShellMesh& mesh,
   std::map<int, TiedNode> nodes;
   std::map<int, double> thickness;
   for (const FacetEdge& edge : edges_on(faces, mesh)) {
+    const std::array<int, 3> on_edge = shell::edge_nodes(mesh, edge);
     const double length = length_of(mesh, edge);
     const double offset = sections[mesh.section[edge.facet]].offset;
     for (const GaussPoint& along : gauss_rule(kAlong)) {
@@ -221,8 +209,8 @@ EdgeTie tie_edges(const TetMesh& solid, const shell::ShellMesh& mesh,
       tie.fibres.push_back(fibre_at(faces, mesh, edge, offset, along.at));
       const Vec3 dual = dual_shapes(along.at);
       for (int k = 0; k < 3; ++k) {
-        TiedNode& node = nodes[edge.nodes[k]];
-        node.node = edge.nodes[k];
+        TiedNode& node = nodes[on_edge[k]];
+        node.node = on_edge[k];
         node.fibres.push_back({fibre, along.weight * length * dual[k]});
         thickness[node.node] = thickness_on(mesh, edge, 0.5);
       }

@@ -1,5 +1,7 @@
 #include "fea/loads/load_rates.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "core/error.h"
@@ -313,6 +315,41 @@ void add_temperature_gradient(const TetMesh& mesh, const LoadCase& load_case,
       field.weights[i] += by_temperature[static_cast<Eigen::Index>(i)];
     }
   }
+}
+
+bool changes(const LoadCase& rates) {
+  const Vec3 none = Vec3::Zero();
+  const auto any = [](const auto& items, const auto& moves) {
+    return std::any_of(items.begin(), items.end(), moves);
+  };
+  const auto& heat = rates.temperature;
+  const auto& spin = rates.spin;
+  return rates.nodal.size() != 0 || rates.gravity != none ||
+         any(rates.forces,
+             [&](const SurfaceForce& f) { return f.total != none; }) ||
+         any(rates.pressures,
+             [](const SurfacePressure& p) {
+               return p.field || p.pressure != 0.0;
+             }) ||
+         any(rates.tractions,
+             [&](const SurfaceTraction& t) {
+               return t.field || t.traction != none;
+             }) ||
+         any(rates.rim_tensions,
+             [](const RimTension& t) { return t.tension != 0.0; }) ||
+         any(rates.remote_loads,
+             [&](const RemoteLoad& r) {
+               return r.point != none || r.force != none || r.moment != none;
+             }) ||
+         any(rates.bearings,
+             [&](const BearingLoad& b) {
+               return b.force != none || value_of(b.point) != none ||
+                      value_of(b.axis) != none;
+             }) ||
+         (spin &&
+          (spin->point != none || spin->axis != none || spin->rate != 0.0)) ||
+         (heat && (heat->field || heat->nodal.size() != 0 ||
+                   heat->value != 0.0 || heat->reference != 0.0));
 }
 
 double load_rate(const LoadGradient& gradient, const LoadCase& rates) {

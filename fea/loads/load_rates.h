@@ -27,6 +27,9 @@ struct LoadGradient {
   NumberField temperature;             // the same
 };
 
+/// Some number of the loads does, or a field may; supports and springs aside.
+bool changes(const LoadCase& rates);
+
 /// `v`: 3 per node; an adjoint, say. Throws as nodal_forces().
 LoadGradient load_gradient(const TetMesh& mesh,
                            const std::vector<element::Material>& materials,

@@ -54,21 +54,29 @@ PlyLaw by_modulus(const element::Material& m, const PlyLaw& own) {
           .squeeze = -share * own.squeeze};
 }
 
+/// From the section's axes to a ply's.
+struct PlyTurn {
+  explicit PlyTurn(double angle) : c(std::cos(angle)), s(std::sin(angle)) {
+    strain << c * c, s * s, c * s,  //
+        s * s, c * c, -c * s,       //
+        -2.0 * c * s, 2.0 * c * s, c * c - s * s;
+    across << c, s, -s, c;
+  }
+
+  double c, s;
+  Mat3 strain;             // (11, 22, 2 x 12)
+  Eigen::Matrix2d across;  // (13, 23)
+};
+
 PlyLaw by_angle(const PlyLaw& own, double angle) {
-  const double c = std::cos(angle);
-  const double s = std::sin(angle);
-  Mat3 T;
-  T << c * c, s * s, c * s,  //
-      s * s, c * c, -c * s,  //
-      -2.0 * c * s, 2.0 * c * s, c * c - s * s;
+  const PlyTurn turn(angle);
+  const auto& [c, s, T, R] = turn;
   const double c2 = c * c - s * s;
   const double s2 = 2.0 * c * s;
   Mat3 dT;
   dT << -s2, s2, c2,  //
       s2, -s2, -c2,   //
       -2.0 * c2, 2.0 * c2, -2.0 * s2;
-  Eigen::Matrix2d R;
-  R << c, s, -s, c;
   Eigen::Matrix2d dR;
   dR << -s, c, -c, -s;
   const Mat3 half = T.transpose() * own.plane * dT;
@@ -83,19 +91,11 @@ PlyLaw by_angle(const PlyLaw& own, double angle) {
 }
 
 PlyLaw turned(const PlyLaw& law, double angle) {
-  const double c = std::cos(angle);
-  const double s = std::sin(angle);
-  // Strains (11, 22, 2 x 12) in the ply's axes from those in the section's.
-  Mat3 T;
-  T << c * c, s * s, c * s,  //
-      s * s, c * c, -c * s,  //
-      -2.0 * c * s, 2.0 * c * s, c * c - s * s;
-  Eigen::Matrix2d R;
-  R << c, s, -s, c;
+  const PlyTurn turn(angle);
   PlyLaw result = law;
-  result.plane = T.transpose() * law.plane * T;
-  result.across = R.transpose() * law.across * R;
-  const auto strain = [&](const Vec3& own) -> Vec3 {
+  result.plane = turn.strain.transpose() * law.plane * turn.strain;
+  result.across = turn.across.transpose() * law.across * turn.across;
+  const auto strain = [c = turn.c, s = turn.s](const Vec3& own) -> Vec3 {
     return {c * c * own[0] + s * s * own[1], s * s * own[0] + c * c * own[1],
             2.0 * c * s * (own[0] - own[1])};
   };

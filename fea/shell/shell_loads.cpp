@@ -44,6 +44,11 @@ void check_loads(const ShellMesh& mesh, const ShellLoads& loads) {
   }
 }
 
+Vec3 edge_shapes(double s) {
+  return {(1.0 - s) * (1.0 - 2.0 * s), s * (2.0 * s - 1.0),
+          4.0 * s * (1.0 - s)};
+}
+
 std::array<LinePoint, 3> line_points(const ShellMesh& mesh,
                                      const std::array<int, 3>& nodes) {
   std::array<LinePoint, 3> points;
@@ -52,8 +57,7 @@ std::array<LinePoint, 3> line_points(const ShellMesh& mesh,
     const double s = rule[q].at;
     LinePoint& p = points[q];
     p.weight = rule[q].weight;
-    p.shape = {(1.0 - s) * (1.0 - 2.0 * s), s * (2.0 * s - 1.0),
-               4.0 * s * (1.0 - s)};
+    Eigen::Map<Vec3>(p.shape.data()) = edge_shapes(s);
     p.slope = {4.0 * s - 3.0, 4.0 * s - 1.0, 4.0 - 8.0 * s};
     p.tangent = Vec3::Zero();
     for (int k = 0; k < 3; ++k) {

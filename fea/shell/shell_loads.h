@@ -86,6 +86,9 @@ VectorX nodal_forces(const ShellMesh& mesh,
 /// As nodal_forces() does.
 void check_loads(const ShellMesh& mesh, const ShellLoads& loads);
 
+/// Functions of an edge's nodes, from, to, middle, at s from 0 to 1.
+Vec3 edge_shapes(double s);
+
 /// A point of an edge's rule (three, on [0, 1]).
 struct LinePoint {
   double weight;

@@ -55,6 +55,11 @@ void check_numbers(const ShellMesh& mesh,
 
 }  // namespace
 
+std::array<int, 3> edge_nodes(const ShellMesh& mesh, const FacetEdge& edge) {
+  const std::array<int, 6>& facet = mesh.facets[edge.facet];
+  return {facet[edge.edge], facet[(edge.edge + 1) % 3], facet[3 + edge.edge]};
+}
+
 ShellMesh shell_mesh(const QuadraticSurface& surface, const VectorX& thickness,
                      int section) {
   const int corners = static_cast<int>(surface.base.points.size());

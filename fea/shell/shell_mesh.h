@@ -29,6 +29,15 @@ struct ShellMesh {
                                 // them [length], > 0
 };
 
+/// The edge of a facet from its corner `edge` to the next.
+struct FacetEdge {
+  int facet = 0;
+  int edge = 0;
+};
+
+/// From, to, middle.
+std::array<int, 3> edge_nodes(const ShellMesh& mesh, const FacetEdge& edge);
+
 /// The facets of a surface as a shell of one section: its corners keep their
 /// numbers, mid-side nodes follow in the order of edges. `thickness`: one per
 /// corner of the surface. Surfaces that share edges are joined there rigidly.

@@ -139,10 +139,6 @@ struct NormTerms {
   }
 };
 
-struct FacetNormGradient : FacetGradient {
-  WholeVector by_whole = WholeVector::Zero();  // with the bubble's two numbers
-};
-
 /// By places and thicknesses, nodes' numbers and bubble held.
 ByShape norm_by_shape(const SolvedFacet& solved, const NormTerms& terms,
                       Tape& tape) {
@@ -181,7 +177,7 @@ Vec3 by_stress(const WallFace& face, const Triple<double>& s,
 /// By the nodes' numbers and the bubble, which strains are linear in, and by
 /// the law.
 void add_by_unknowns(const SolvedFacet& solved, const NormTerms& terms,
-                     FacetNormGradient& gradient) {
+                     WholeGradient& gradient) {
   const Facet& facet = solved.facet;
   const auto X = triples(facet);
   const auto axes = bubble_axes(X);
@@ -222,15 +218,7 @@ void add_by_unknowns(const SolvedFacet& solved, const NormTerms& terms,
       }
       return sum;
     };
-    const Triple<double> still = {0.0, 0.0, 0.0};
-    for (int n = 0; n < kUnknowns; ++n) {
-      FacetField unit = FacetField::Zero();
-      unit(n % 6, n / 6) = 1.0;
-      gradient.by_whole[n] += work(unit, still);
-    }
-    for (int k = 0; k < 2; ++k) {
-      gradient.by_whole[kUnknowns + k] += work(FacetField::Zero(), axes[k]);
-    }
+    add_linear_work(axes, work, gradient.by_whole);
   }
   gradient.by_ply = by_law.by_ply();
 }
@@ -302,7 +290,7 @@ class NormOfShell {
   }
 
   void add_derivatives(const NormTerms& terms, StressNorm& norm) const {
-    std::vector<FacetNormGradient> parts(mesh_.facets.size());
+    std::vector<WholeGradient> parts(mesh_.facets.size());
     std::vector<Eigen::Vector2d> on_bubbles(mesh_.facets.size());
     parallel_for(count(), [&](std::ptrdiff_t k) {
       static thread_local Tape tape;

@@ -39,6 +39,27 @@ struct FacetGradient {
   std::vector<PlyGradient> by_ply;  // empty: 0
 };
 
+/// With that by the nodes' numbers and the bubble's two.
+struct WholeGradient : FacetGradient {
+  WholeVector by_whole = WholeVector::Zero();
+};
+
+/// work(field of the nodes, bubble's rotation), which is linear in both, by
+/// each of the numbers; `axes` are the bubble's.
+template <class Work>
+void add_linear_work(const std::array<Triple<double>, 2>& axes,
+                     const Work& work, WholeVector& sum) {
+  const Triple<double> still = {0.0, 0.0, 0.0};
+  for (int n = 0; n < kUnknowns; ++n) {
+    FacetField unit = FacetField::Zero();
+    unit(n % 6, n / 6) = 1.0;
+    sum[n] += work(unit, still);
+  }
+  for (int k = 0; k < 2; ++k) {
+    sum[kUnknowns + k] += work(FacetField::Zero(), axes[k]);
+  }
+}
+
 /// Of no value, with its vectors' lengths.
 ShellGradient empty_gradient(const ShellMesh& mesh);
 

@@ -28,10 +28,9 @@ struct Point {
 std::vector<Point> points_of(const ShellMesh& mesh, const LineLoad& load) {
   std::vector<Point> points;
   for (const FacetEdge& edge : load.edges) {
-    const std::array<int, 6>& facet = mesh.facets[edge.facet];
+    const std::array<int, 3> nodes = edge_nodes(mesh, edge);
     const int from = edge.edge;
     const int to = (edge.edge + 1) % 3;
-    const std::array<int, 3> nodes = {facet[from], facet[to], facet[3 + from]};
     const Vec3& thickness = mesh.thickness[edge.facet];
     for (const LinePoint& line : line_points(mesh, nodes)) {
       Point point{nodes, edge, line};

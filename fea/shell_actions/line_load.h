@@ -11,12 +11,6 @@
 
 namespace meniscus::shell {
 
-/// An edge of a facet, 0: (01), 1: (12), 2: (20).
-struct FacetEdge {
-  int facet = 0;
-  int edge = 0;
-};
-
 /// Without stiffening the edges. With d from their centre, by length, and b the
 /// turn of a rigid line: the force per length is F / length + b x d, linear in
 /// the place, and a moment of t^2 / 12 (b . e) per length acts about the edge's

@@ -39,12 +39,8 @@ T work_at(const StressedFacet& at, const std::array<Triple<T>, kNodes>& X,
                      at.x);
 }
 
-struct FacetWork : FacetGradient {
-  WholeVector by_whole = WholeVector::Zero();  // with the bubble's two numbers
-};
-
 /// By places and thicknesses, nodes' numbers and bubble held.
-void add_by_places(const StressedFacet& at, Tape& tape, FacetWork& work) {
+void add_by_places(const StressedFacet& at, Tape& tape, WholeGradient& work) {
   const TapedFacet taped(at.facet, tape);
   const Triple<Taped> bubble = taped.bubble(at.bubble);
   Taped sum(0.0);
@@ -130,7 +126,7 @@ void add_by_law(const StressedFacet& at, const FacetFrame<double>& frame,
 
 /// By the nodes' numbers and the bubble, which resultants are linear in, and by
 /// the law.
-void add_by_numbers(const StressedFacet& at, FacetWork& work) {
+void add_by_numbers(const StressedFacet& at, WholeGradient& work) {
   const auto X = triples(at.facet);
   const auto axes = bubble_axes(X);
   const ShellLoads none;
@@ -216,7 +212,7 @@ ModeWork geometric_work(const ShellMesh& mesh,
   check_shell(mesh, sections);
   const std::vector<LaminateLaw> laws = laminate_laws(sections);
   const std::vector<FacetLoad> own = facet_loads(mesh, loads);
-  std::vector<FacetWork> parts(mesh.facets.size());
+  std::vector<WholeGradient> parts(mesh.facets.size());
   std::vector<Eigen::Vector2d> on_bubbles(mesh.facets.size());
   parallel_for(static_cast<std::ptrdiff_t>(parts.size()),
                [&](std::ptrdiff_t k) {

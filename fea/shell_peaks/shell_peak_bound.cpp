@@ -166,10 +166,6 @@ void add_by_law(const Facet& facet, const WallState& state,
   }
 }
 
-struct FacetPeakGradient : FacetGradient {
-  WholeVector by_whole = WholeVector::Zero();  // with the bubble's two numbers
-};
-
 /// One facet under one state.
 struct LoadedFacet {
   Facet facet;
@@ -178,10 +174,10 @@ struct LoadedFacet {
   Eigen::Vector2d bubble;
 };
 
-FacetPeakGradient facet_gradient(const LoadedFacet& solved,
-                                 const FacetTensors& tensors, Tape& tape) {
+WholeGradient facet_gradient(const LoadedFacet& solved,
+                             const FacetTensors& tensors, Tape& tape) {
   const Facet& facet = solved.facet;
-  FacetPeakGradient gradient;
+  WholeGradient gradient;
   // By places and thicknesses, all unknowns held.
   const TapedFacet taped(facet, tape);
   const Triple<Taped> of_u = taped.bubble(solved.bubble);
@@ -199,7 +195,6 @@ FacetPeakGradient facet_gradient(const LoadedFacet& solved,
   const auto X = triples(facet);
   const auto axes = bubble_axes(X);
   const Triple<double> bubble = bubble_turn(axes, solved.bubble);
-  const Triple<double> still = {0.0, 0.0, 0.0};
   LawGradient by_law(*facet.law);
   for (int q = 0; q < 3; ++q) {
     const FacetPoint& p = stress_points()[q];
@@ -214,14 +209,7 @@ FacetPeakGradient facet_gradient(const LoadedFacet& solved,
                                  facet_strain(X, p, frame, field, turned), t,
                                  tensors.at[q]);
     };
-    for (int n = 0; n < kUnknowns; ++n) {
-      FacetField unit = FacetField::Zero();
-      unit(n % 6, n / 6) = 1.0;
-      gradient.by_whole[n] += work(unit, still);
-    }
-    for (int k = 0; k < 2; ++k) {
-      gradient.by_whole[kUnknowns + k] += work(FacetField::Zero(), axes[k]);
-    }
+    add_linear_work(axes, work, gradient.by_whole);
   }
   gradient.by_ply = by_law.by_ply();
   return gradient;
@@ -371,7 +359,7 @@ class PeakOfShell {
   void add_state(const ShellState& state, const StateStress& by,
                  ShellPeakBound& bound) const {
     const std::vector<FacetLoad> own = facet_loads(in_.mesh, state.loads);
-    std::vector<FacetPeakGradient> parts(in_.mesh.facets.size());
+    std::vector<WholeGradient> parts(in_.mesh.facets.size());
     std::vector<Eigen::Vector2d> on_bubbles(parts.size(),
                                             Eigen::Vector2d::Zero());
     parallel_for(

@@ -269,6 +269,15 @@ const ResponseRow& row_of(ResponseKind kind) {
       [&](const ResponseRow& row) { return row.kind == kind; });
 }
 
+std::vector<std::string> names_of(const std::vector<ResponseKind>& kinds) {
+  std::vector<std::string> names;
+  names.reserve(kinds.size());
+  for (const ResponseKind kind : kinds) {
+    names.emplace_back(row_of(kind).name);
+  }
+  return names;
+}
+
 bool needs_key(const ResponseRow& row, const char* key) {
   return std::find(row.keys.needed.begin(), row.keys.needed.end(), key) !=
          row.keys.needed.end();

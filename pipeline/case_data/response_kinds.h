@@ -49,6 +49,9 @@ const std::vector<ResponseRow>& response_kinds();
 
 const ResponseRow& row_of(ResponseKind kind);
 
+/// Their names, in this order.
+std::vector<std::string> names_of(const std::vector<ResponseKind>& kinds);
+
 /// A key that each of its kind has.
 bool needs_key(const ResponseRow& row, const char* key);
 

@@ -157,15 +157,10 @@ class JointChecks {
     const case_data::ResponseRow& row = case_data::row_of(response.kind);
     if (!row.of_films &&
         std::find(kinds.begin(), kinds.end(), response.kind) == kinds.end()) {
-      std::vector<std::string> names;
-      names.reserve(kinds.size());
-      for (const case_data::ResponseKind kind : kinds) {
-        names.emplace_back(case_data::row_of(kind).name);
-      }
       refuse(response.line,
              fmt::format("responses.{} of kind {}", response.name, row.name),
              fmt::format("there are {} and those of films",
-                         fmt::join(names, ", ")));
+                         fmt::join(case_data::names_of(kinds), ", ")));
     } else if (response.kind == case_data::ResponseKind::StrainEnergy &&
                !input_.load_cases[static_cast<std::size_t>(response.load_case)]
                     .springs.empty()) {

@@ -206,31 +206,13 @@ loads::LoadCase on_shells(const ShellPart& part,
 
 equations::ElasticSolution solve_joint(const case_data::EvaluatedCase& inputs,
                                        ShellPart& part) {
-  equations::ElasticSolution solution;
-  solution.report.solver = "cholmod";
-  part.cases.resize(inputs.load_cases.size());
-  std::size_t k = 0;
-  const auto failed = [&](const std::exception& error) {
-    solution.failure =
-        Failure{FailureKind::SolverFailed,
-                fmt::format("load case '{}': {}", inputs.load_cases[k].name,
-                            error.what())};
-  };
-  try {
-    for (; k < part.cases.size(); ++k) {
-      const Timer setup;
-      part.cases[k].joint = joint_of(inputs, k, part);
-      solution.report.setup_seconds += setup.seconds();
-      solve_both(inputs.load_cases[k], part, part.cases[k], solution);
-    }
-  } catch (const SolverError& error) {
-    failed(error);
-  } catch (const InvalidInput& error) {
-    failed(error);
-  } catch (const MeshError& error) {
-    solution.failure = Failure{FailureKind::ElementsInverted, error.what()};
-  }
-  return solution;
+  return solve_load_cases(
+      inputs, part, [&](std::size_t k, equations::ElasticSolution& solution) {
+        const Timer setup;
+        part.cases[k].joint = joint_of(inputs, k, part);
+        solution.report.setup_seconds += setup.seconds();
+        solve_both(inputs.load_cases[k], part, part.cases[k], solution);
+      });
 }
 
 VectorX by_both(const ShellPart& part, const VectorX& by_displacement) {
@@ -289,6 +271,9 @@ shell::ShellGradient joint_force_gradient(
 
 double joint_work_rate(const ShellPart& part, const loads::LoadCase& load_case,
                        const loads::LoadCase& rates, const VectorX& v) {
+  if (!loads::changes(rates)) {  // by most variables
+    return 0.0;
+  }
   const SolidPart& solid = *part.solid;
   return loads::load_rate(loads::load_gradient(solid.mesh, solid.materials,
                                                on_solids(part, load_case),

@@ -196,16 +196,11 @@ class ShellChecks {
     const case_data::ResponseRow& row = case_data::row_of(response.kind);
     if (!row.of_films &&
         std::find(kinds.begin(), kinds.end(), response.kind) == kinds.end()) {
-      std::vector<std::string> names;
-      names.reserve(kinds.size());
-      for (const case_data::ResponseKind kind : kinds) {
-        names.emplace_back(case_data::row_of(kind).name);
-      }
-      problems_.add(
-          response.line,
-          fmt::format("responses.{} is of kind {}, which shells do "
-                      "not have; they have {} and those of films",
-                      response.name, row.name, fmt::join(names, ", ")));
+      problems_.add(response.line,
+                    fmt::format("responses.{} is of kind {}, which shells do "
+                                "not have; they have {} and those of films",
+                                response.name, row.name,
+                                fmt::join(case_data::names_of(kinds), ", ")));
     } else if (is_rim(response.surface) &&
                (response.kind != case_data::ResponseKind::MeanDisplacement ||
                 response.weight)) {

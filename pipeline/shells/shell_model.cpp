@@ -402,8 +402,10 @@ void solve_case(const loads::LoadCase& load_case, ShellPart& part,
 
 }  // namespace
 
-equations::ElasticSolution solve_shell(const case_data::EvaluatedCase& inputs,
-                                       ShellPart& part) {
+equations::ElasticSolution solve_load_cases(
+    const case_data::EvaluatedCase& inputs, ShellPart& part,
+    const std::function<void(std::size_t load_case,
+                             equations::ElasticSolution& solution)>& solve) {
   equations::ElasticSolution solution;
   solution.report.solver = "cholmod";
   part.cases.resize(inputs.load_cases.size());
@@ -416,17 +418,27 @@ equations::ElasticSolution solve_shell(const case_data::EvaluatedCase& inputs,
   };
   try {
     for (; k < part.cases.size(); ++k) {
-      const Timer setup;
-      part.cases[k].system = system_of(inputs, k, part);
-      solution.report.setup_seconds += setup.seconds();
-      solve_case(inputs.load_cases[k], part, part.cases[k], solution);
+      solve(k, solution);
     }
   } catch (const SolverError& error) {
     failed(error);
   } catch (const InvalidInput& error) {
     failed(error);
+  } catch (const MeshError& error) {
+    solution.failure = Failure{FailureKind::ElementsInverted, error.what()};
   }
   return solution;
+}
+
+equations::ElasticSolution solve_shell(const case_data::EvaluatedCase& inputs,
+                                       ShellPart& part) {
+  return solve_load_cases(
+      inputs, part, [&](std::size_t k, equations::ElasticSolution& solution) {
+        const Timer setup;
+        part.cases[k].system = system_of(inputs, k, part);
+        solution.report.setup_seconds += setup.seconds();
+        solve_case(inputs.load_cases[k], part, part.cases[k], solution);
+      });
 }
 
 }  // namespace meniscus::shells

@@ -1,6 +1,7 @@
 /// The shells of a case on its film, frozen.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -57,6 +58,13 @@ class ShellModel {
 /// What holds the nodes of the part. Throws InvalidInput for a rim of no edge.
 std::vector<shell::NodeSupport> node_supports(const ShellPart& part,
                                               const loads::LoadCase& load_case);
+
+/// `solve(k)` of each load case, adding to the solution; what cannot be solved
+/// is its failure.
+equations::ElasticSolution solve_load_cases(
+    const case_data::EvaluatedCase& inputs, ShellPart& part,
+    const std::function<void(std::size_t load_case,
+                             equations::ElasticSolution& solution)>& solve);
 
 /// What enforced displacements that change at `rates` change a
 /// functional J by, K v - dJ/du the reactions to its adjoint v (6 per node).

@@ -225,6 +225,9 @@ shell::ShellGradient work_gradient(const ShellPart& part, std::size_t load_case,
 
 double work_rate(const ShellPart& part, const loads::LoadCase& load_case,
                  const loads::LoadCase& rates, const VectorX& v) {
+  if (!loads::changes(rates)) {  // by most variables
+    return 0.0;
+  }
   shell::ShellLoads own = facet_loads_of(part, rates);
   if (load_case.spin) {
     own.mass_force = shell::mass_force_rate(*load_case.spin, *rates.spin);
