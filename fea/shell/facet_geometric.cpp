@@ -126,8 +126,8 @@ FacetMatrix facet_geometric(const Facet& facet, const ShellLoads& loads,
     const FacetFrame<double> frame = facet_frame(X, p, facet.direction);
     const FacetStrain<double> strain = facet_strain(X, p, frame, field, bubble);
     add_point(p, frame,
-              facet_resultants<double>(
-                  {facet, loads, own, frame, strain, thickness_at(facet, p)}),
+              facet_resultants<double>({facet, loads, own, p, frame, strain,
+                                        thickness_at(facet, p)}),
               K);
   }
   return K;

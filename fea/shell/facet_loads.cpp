@@ -1,6 +1,7 @@
 #include "fea/shell/facet_loads.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
@@ -47,12 +48,13 @@ WholeVector pressure_forces(const Facet& facet, const FacetLoad& load) {
   for (const FacetPoint& p : facet_rule()) {
     const FacetFrame<double> frame = facet_frame(X, p, facet.direction);
     const double t = thickness_at(facet, p);
+    const FacePressures acting = pressures_at(load, p);
     const auto push = [&](double pressure, double at) {
       const double zeta = (at + facet.offset) * t;
       return pressure * determinant(shifter(frame.curvature, zeta));
     };
-    const double sum = push(load.negative, -0.5) + push(load.middle, 0.0) +
-                       push(load.positive, 0.5);
+    const double sum = push(acting.negative, -0.5) + push(acting.middle, 0.0) +
+                       push(acting.positive, 0.5);
     const Vec3 force = p.weight * frame.area * sum * as_vector(frame.axes[2]);
     for (int i = 0; i < kNodes; ++i) {
       f.segment<3>(6 * i) += p.shape[i] * force;
@@ -108,7 +110,7 @@ Vec3 acceleration(const ShellLoads& loads, const Vec3& x) {
 }
 
 bool FacetLoad::presses() const {
-  return negative != 0.0 || middle != 0.0 || positive != 0.0;
+  return negative != 0.0 || middle != 0.0 || positive != 0.0 || fields;
 }
 
 bool FacetLoad::pulls() const {
@@ -129,6 +131,46 @@ EdgeForces& edge_of(std::vector<FacetLoad>& sums, int facet, int edge,
   return sums[facet].edges[edge];
 }
 
+void check_facet(int facet, int facets) {
+  if (facet < 0 || facet >= facets) {
+    throw InvalidInput(
+        fmt::format("a pressure acts on facet {} of {}", facet, facets));
+  }
+}
+
+void add_fields(const ShellMesh& mesh, const ShellLoads& loads,
+                std::vector<FacetLoad>& sums) {
+  std::vector<std::shared_ptr<FacetFields>> fields(
+      loads.field_pressures.empty() && !loads.nodal_temperature ? 0
+                                                                : sums.size());
+  const auto of = [&](std::size_t facet) -> FacetFields& {
+    if (!fields[facet]) {
+      fields[facet] = std::make_shared<FacetFields>();
+    }
+    return *fields[facet];
+  };
+  for (const FieldPressure& load : loads.field_pressures) {
+    check_facet(load.facet, static_cast<int>(sums.size()));
+    FacetFields& own = of(load.facet);
+    (load.side == WallSide::Positive ? own.positive : own.negative) +=
+        load.pressure;
+  }
+  if (const auto& heat = loads.nodal_temperature) {
+    for (std::size_t f = 0; f < sums.size(); ++f) {
+      NodeValues& own = of(f).temperature;
+      for (int i = 0; i < kNodes; ++i) {
+        const int node = mesh.facets[f][i];
+        own.value[i] = heat->value[node];
+        own.slope[i] =
+            heat->slope.empty() ? Vec3(Vec3::Zero()) : heat->slope[node];
+      }
+    }
+  }
+  for (std::size_t f = 0; f < fields.size(); ++f) {
+    sums[f].fields = std::move(fields[f]);
+  }
+}
+
 }  // namespace
 
 std::vector<FacetLoad> facet_loads(const ShellMesh& mesh,
@@ -136,10 +178,7 @@ std::vector<FacetLoad> facet_loads(const ShellMesh& mesh,
   std::vector<FacetLoad> sums(mesh.facets.size());
   const int facets = static_cast<int>(mesh.facets.size());
   for (const FacetPressure& load : loads.pressures) {
-    if (load.facet < 0 || load.facet >= facets) {
-      throw InvalidInput(
-          fmt::format("a pressure acts on facet {} of {}", load.facet, facets));
-    }
+    check_facet(load.facet, facets);
     FacetLoad& sum = sums[load.facet];
     switch (load.side) {
       case WallSide::Negative:
@@ -153,6 +192,7 @@ std::vector<FacetLoad> facet_loads(const ShellMesh& mesh,
         break;
     }
   }
+  add_fields(mesh, loads, sums);
   for (const EdgePull& load : loads.pulls) {
     edge_of(sums, load.facet, load.edge, "pull").pull += load.force;
   }
@@ -164,7 +204,7 @@ std::vector<FacetLoad> facet_loads(const ShellMesh& mesh,
   return sums;
 }
 
-WallState wall_state(const ShellLoads& loads, const FacetLoad& own) {
+WallStates wall_states(const ShellLoads& loads, const FacetLoad& own) {
   WallState state;
   if (loads.temperature) {
     state.temperature = loads.temperature->mean;
@@ -172,7 +212,29 @@ WallState wall_state(const ShellLoads& loads, const FacetLoad& own) {
   }
   state.stress_negative = -own.negative;
   state.stress_positive = own.positive;
-  return state;
+  return {state, own.fields.get()};
+}
+
+FacePressures pressures_at(const FacetLoad& own, const FacetPoint& p) {
+  FacePressures result{own.negative, own.middle, own.positive};
+  if (own.fields) {
+    result.negative += own.fields->negative.at(p);
+    result.positive += own.fields->positive.at(p);
+  }
+  return result;
+}
+
+void add_field_slopes(const FacetLoad& own, const ByLoads& by_loads,
+                      double* by_places) {
+  if (!own.fields) {
+    return;
+  }
+  for (int i = 0; i < kNodes; ++i) {
+    Eigen::Map<Vec3>(by_places + 3L * i) +=
+        by_loads(0, i) * own.fields->temperature.slope[i] +
+        by_loads(1, i) * own.fields->negative.slope[i] +
+        by_loads(2, i) * own.fields->positive.slope[i];
+  }
 }
 
 WholeVector facet_forces(const Facet& facet, const ShellLoads& loads,
@@ -188,7 +250,7 @@ WholeVector facet_forces(const Facet& facet, const ShellLoads& loads,
     f += edge_forces(facet, own);
   }
   if (loads.temperature || own.presses()) {
-    f += holding_forces(facet, wall_state(loads, own));
+    f += holding_forces(facet, wall_states(loads, own));
   }
   return f;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <vector>
 
 #include "fea/shell/facet_matrices.h"
@@ -32,6 +33,7 @@ struct FacetLoad {
   double middle = 0.0;
   double positive = 0.0;
   std::array<EdgeForces, 3> edges = {};
+  std::shared_ptr<const FacetFields> fields;  // null: none
 
   bool presses() const;
   bool pulls() const;
@@ -40,8 +42,19 @@ struct FacetLoad {
 std::vector<FacetLoad> facet_loads(const ShellMesh& mesh,
                                    const ShellLoads& loads);
 
-/// Free strains of a facet under the loads.
-WallState wall_state(const ShellLoads& loads, const FacetLoad& own);
+/// Free strains of a facet under the loads; `own` is kept by reference.
+WallStates wall_states(const ShellLoads& loads, const FacetLoad& own);
+
+/// Pressures on its negative face, in the middle and on the positive face.
+struct FacePressures {
+  double negative, middle, positive;
+};
+FacePressures pressures_at(const FacetLoad& own, const FacetPoint& p);
+
+/// Derivatives by fields as derivatives by the nodes' places, 3 per node; with
+/// those that `by_places` has.
+void add_field_slopes(const FacetLoad& own, const ByLoads& by_loads,
+                      double* by_places);
 
 /// What acts on one facet but edges and nodes: consistent, the bubble's moments
 /// last.

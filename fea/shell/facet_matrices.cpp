@@ -209,7 +209,8 @@ FacetMatrix condensed(const WholeMatrix& K, WholeVector* f) {
     f->head<kUnknowns>() -= X.transpose() * f->tail<2>();
   }
   FacetMatrix result = K.topLeftCorner<kUnknowns, kUnknowns>();
-  result.noalias() -= K.topRightCorner<kUnknowns, 2>() * X;
+  // Of two columns: no work for a product in blocks.
+  result.noalias() -= K.topRightCorner<kUnknowns, 2>().lazyProduct(X);
   return result;
 }
 
@@ -256,25 +257,14 @@ FacetMatrix facet_mass(const Facet& facet, const FacetRule& rule) {
   return M;
 }
 
-double WallState::heat(double at) const {
-  return temperature + temperature_across * at;
-}
-
-double WallState::stress(double at) const {
-  return (0.5 - at) * stress_negative + (0.5 + at) * stress_positive;
-}
-
-Vec3 WallState::free_strain(const PlyLaw& ply, double at) const {
-  return heat(at) * ply.expansion + stress(at) * ply.squeeze;
-}
-
-WholeVector holding_forces(const Facet& facet, const WallState& state,
+WholeVector holding_forces(const Facet& facet, const WallStates& states,
                            const FacetRule& rule) {
   const auto X = triples(facet);
   const BubbleAxes bubble = bubble_columns(X);
   WholeVector f = WholeVector::Zero();
   for (const FacetPoint& p : rule) {
     const FacetFrame<double> frame = facet_frame(X, p, facet.direction);
+    const WallState state = states.at(p);
     StrainVector s = StrainVector::Zero();
     for_each_layer(
         facet, frame, thickness_at(facet, p),

@@ -8,6 +8,7 @@
 #include "fea/shell/facet_rule.h"
 #include "fea/shell/facet_strain.h"
 #include "fea/shell/shell_mesh.h"
+#include "fea/shell/wall_state.h"
 
 namespace meniscus::shell {
 
@@ -53,20 +54,8 @@ Eigen::Vector2d bubble_rotation(const WholeMatrix& K, const WholeVector& f,
 FacetMatrix facet_mass(const Facet& facet,
                        const FacetRule& rule = facet_rule());
 
-/// What strains a wall freely: linear between its faces.
-struct WallState {
-  double temperature = 0.0;         // change at the middle of the wall
-  double temperature_across = 0.0;  // at the positive face less the negative
-  double stress_negative = 0.0;     // along the normal, at the faces
-  double stress_positive = 0.0;     // [pressure]
-
-  double heat(double at) const;  // `at` as LayerPoint has it
-  double stress(double at) const;
-  Vec3 free_strain(const PlyLaw& ply, double at) const;
-};
-
 /// Forces that hold the free strains back.
-WholeVector holding_forces(const Facet& facet, const WallState& state,
+WholeVector holding_forces(const Facet& facet, const WallStates& states,
                            const FacetRule& rule = facet_rule());
 
 /// The linear functions of the corners at a point, and the thickness there.

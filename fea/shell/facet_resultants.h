@@ -28,6 +28,7 @@ struct StressedPoint {
   const Facet& facet;
   const ShellLoads& loads;
   const FacetLoad& own;
+  const FacetPoint& point;
   const FacetFrame<T>& frame;
   const FacetStrain<T>& strain;
   T thickness;
@@ -36,7 +37,7 @@ struct StressedPoint {
 template <class T>
 FacetResultants<T> facet_resultants(const StressedPoint<T>& at) {
   const LaminateLaw& law = *at.facet.law;
-  const WallState state = wall_state(at.loads, at.own);
+  const WallState state = wall_states(at.loads, at.own).at(at.point);
   const auto height = [&](double place) -> T {
     return (place + at.facet.offset) * at.thickness;
   };
@@ -81,8 +82,9 @@ FacetResultants<T> facet_resultants(const StressedPoint<T>& at) {
     const T zeta = height(place);
     return pressure * zeta * determinant(shifter(at.frame.curvature, zeta));
   };
-  const T pushed = push(at.own.negative, -0.5) + push(at.own.middle, 0.0) +
-                   push(at.own.positive, 0.5);
+  const FacePressures acting = pressures_at(at.own, at.point);
+  const T pushed = push(acting.negative, -0.5) + push(acting.middle, 0.0) +
+                   push(acting.positive, 0.5);
   const Vec3& g = at.loads.gravity;
   sum.lever = plus(times(moment, Triple<double>{g[0], g[1], g[2]}), pushed,
                    at.frame.axes[2]);

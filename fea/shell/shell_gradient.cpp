@@ -130,12 +130,13 @@ Taped outer_work(const TapedPoint& at, const ShellLoads& loads,
   const Triple<Taped> theta =
       plus(times(at.point.shape[kNodes], bubble), 1.0, nodal);
   const Triple<Taped>& n = at.wall.frame.axes[2];
+  const FacePressures acting = pressures_at(own, at.point);
   const auto push = [&](double p, double place) {
     const Taped zeta = (place + at.facet.offset) * at.wall.thickness;
     return p * determinant(shifter(at.wall.frame.curvature, zeta));
   };
-  Taped sum = (push(own.negative, -0.5) + push(own.middle, 0.0) +
-               push(own.positive, 0.5)) *
+  Taped sum = (push(acting.negative, -0.5) + push(acting.middle, 0.0) +
+               push(acting.positive, 0.5)) *
               dot(n, u);
   if (has_mass_loads(loads)) {
     const Triple<Taped> arm = cross(theta, n);
@@ -194,10 +195,10 @@ struct FacetResidual {
   WholeField v, u;
 };
 
-/// By the law, at one point of which the area is `area`.
+/// By the law and the loads, at one point of which the area is `area`.
 void add_by_law(const FacetResidual& residual, const FacetPoint& p,
                 const std::array<Triple<double>, kNodes>& X, double area,
-                LawGradient& sum) {
+                LawGradient& sum, FacetGradient& loads) {
   const Facet& facet = residual.facet;
   const FacetFrame<double> frame = facet_frame(X, p, facet.direction);
   const auto axes = bubble_axes(X);
@@ -206,7 +207,7 @@ void add_by_law(const FacetResidual& residual, const FacetPoint& p,
       facet_strain(X, p, frame, residual.v.nodes, of_v);
   const FacetStrain<double> u = facet_strain(
       X, p, frame, residual.u.nodes, bubble_turn(axes, residual.u.bubble));
-  const WallState state = wall_state(residual.loads, residual.own);
+  const WallState state = wall_states(residual.loads, residual.own).at(p);
   const double t = thickness_at(facet, p);
   const Vec3 n = as_vector(frame.axes[2]);
   Vec3 x = Vec3::Zero();
@@ -217,7 +218,7 @@ void add_by_law(const FacetResidual& residual, const FacetPoint& p,
     moved += p.shape[i] * residual.v.nodes.col(i).head<3>();
     turned += p.shape[i] * residual.v.nodes.col(i).tail<3>();
   }
-  const bool heavy = has_mass_loads(residual.loads);
+  StateGradient by_state;
   for (const LayerPoint& layer : facet.law->points) {
     const double zeta = (layer.at + facet.offset) * t;
     const Square<double> shift = shifter(frame.curvature, zeta);
@@ -231,17 +232,24 @@ void add_by_law(const FacetResidual& residual, const FacetPoint& p,
     sum.by_across -= weight * Eigen::Vector2d(a.across[0], a.across[1]) *
                      Eigen::RowVector2d(b.across[0], b.across[1]);
     const Vec3 held = weight * ply.plane.transpose() * as_vector(a.plane);
-    by.expansion += state.heat(layer.at) * held;
-    by.squeeze += state.stress(layer.at) * held;
-    if (heavy) {
-      by.density +=
-          weight * (moved + zeta * turned.cross(n))
-                       .dot(acceleration(residual.loads, x + zeta * n));
-    }
+    by_state.add_free_strain(state, ply, layer.at, held, by);
+    const Vec3 there = x + zeta * n;
+    const Vec3 motion = weight * (moved + zeta * turned.cross(n));
+    by.density += motion.dot(acceleration(residual.loads, there));
+    loads.by_mass.add(ply.density * motion, there);
   }
   sum.by_mean_shear -= area * kDrilling * t *
                        (v.stretch[0][1] - v.stretch[1][0]) *
                        (u.stretch[0][1] - u.stretch[1][0]);
+  by_state.add_to(p, loads.by_loads);
+  const auto push = [&](double place) {
+    const double zeta = (place + facet.offset) * t;
+    return area * determinant(shifter(frame.curvature, zeta)) * n.dot(moved);
+  };
+  const Vec3 pushed(0.0, push(-0.5), push(0.5));
+  for (int i = 0; i < kNodes; ++i) {
+    loads.by_loads.col(i) += p.shape[i] * pushed;
+  }
 }
 
 FacetGradient facet_gradient(const FacetResidual& residual, Tape& tape) {
@@ -249,22 +257,28 @@ FacetGradient facet_gradient(const FacetResidual& residual, Tape& tape) {
   const TapedFacet taped(facet, tape);
   const Triple<Taped> of_v = taped.bubble(residual.v.bubble);
   const Triple<Taped> of_u = taped.bubble(residual.u.bubble);
-  const WallState state = wall_state(residual.loads, residual.own);
+  const WallStates states = wall_states(residual.loads, residual.own);
+  FacetGradient gradient;
   const auto X = triples(facet);
   LawGradient by_law(*facet.law);
   Taped sum = edge_work(facet, taped, residual.own, residual.v);
   for (const FacetPoint& p : facet_rule()) {
     const TapedPoint at = taped_point(facet, taped, p);
     const FacetFrame<Taped>& frame = at.wall.frame;
-    const Taped inner = inner_work(
-        at, state, facet_strain(taped.X, p, frame, residual.v.nodes, of_v),
-        facet_strain(taped.X, p, frame, residual.u.nodes, of_u));
+    const Taped inner =
+        inner_work(at, states.at(p),
+                   facet_strain(taped.X, p, frame, residual.v.nodes, of_v),
+                   facet_strain(taped.X, p, frame, residual.u.nodes, of_u));
     const Taped outer =
         outer_work(at, residual.loads, residual.own, residual.v, of_v);
     sum = sum + p.weight * frame.area * (outer - inner);
-    add_by_law(residual, p, X, p.weight * frame.area.value, by_law);
+    add_by_law(residual, p, X, p.weight * frame.area.value, by_law, gradient);
   }
-  return {sum.value, taped.transpose(sum), by_law.by_ply()};
+  gradient.value = sum.value;
+  gradient.by = taped.transpose(sum);
+  gradient.by_ply = by_law.by_ply();
+  add_field_slopes(residual.own, gradient.by_loads, gradient.by.data());
+  return gradient;
 }
 
 FacetGradient facet_mass_gradient(const Facet& facet, Tape& tape) {
@@ -283,7 +297,11 @@ FacetGradient facet_mass_gradient(const Facet& facet, Tape& tape) {
         });
     mass = mass + area * density;
   }
-  return {mass.value, taped.transpose(mass), std::move(by_ply)};
+  return {mass.value,
+          taped.transpose(mass),
+          std::move(by_ply),
+          ByLoads::Zero(),
+          {}};
 }
 
 void add_edge_gradient(const ShellMesh& mesh, const EdgeLoad& load,
@@ -351,6 +369,30 @@ ShellGradient residual_gradient(
     gradient.value += v.dot(loads.nodal);
   }
   return gradient;
+}
+
+double action_rate(const ShellMesh& mesh, const ActionGradient& by,
+                   const ShellLoads& rates) {
+  check_loads(mesh, rates);
+  const std::vector<FacetLoad> own = facet_loads(mesh, rates);
+  const double heat = rates.temperature ? rates.temperature->mean : 0.0;
+  double sum = by.mass.gravity.dot(rates.gravity);
+  if (const auto& force = rates.mass_force) {
+    sum += by.mass.at_origin.dot(force->at_origin) +
+           by.mass.slope.cwiseProduct(force->slope).sum();
+  }
+  for (std::size_t f = 0; f < own.size(); ++f) {
+    const Vec3 all = by.facets[f].rowwise().sum();
+    sum += all.dot(Vec3(heat, own[f].negative, own[f].positive));
+    if (const FacetFields* fields = own[f].fields.get()) {
+      for (int i = 0; i < kNodes; ++i) {
+        sum += by.facets[f].col(i).dot(Vec3(fields->temperature.value[i],
+                                            fields->negative.value[i],
+                                            fields->positive.value[i]));
+      }
+    }
+  }
+  return sum;
 }
 
 ShellGradient shell_mass(const ShellMesh& mesh,

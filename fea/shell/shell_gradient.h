@@ -6,6 +6,7 @@
 
 #include "fea/shell/shell_loads.h"
 #include "fea/shell/shell_mesh.h"
+#include "fea/shell/wall_state.h"
 
 namespace meniscus::shell {
 
@@ -14,6 +15,7 @@ struct ShellGradient {
   Points by_nodes;                 // one per node [of value / length]
   std::vector<Vec3> by_thickness;  // at each facet's corners [the same]
   PlyGradients by_ply;
+  ActionGradient by_actions;
 };
 
 /// v . (f(x, t) - K(x, t) u) and its derivatives, f the nodal_forces() of the
@@ -28,6 +30,12 @@ ShellGradient residual_gradient(
     const ShellMesh& mesh, const std::vector<Section>& sections,
     const ShellLoads& loads, const VectorX& v, const VectorX& u,
     const std::vector<Eigen::Vector2d>* on_bubbles = nullptr);
+
+/// What a value changes by as its temperatures, pressures, gravity and force
+/// per mass do at `rates`, of which nothing else is read; a spin's are a
+/// mass_force there. Throws as nodal_forces().
+double action_rate(const ShellMesh& mesh, const ActionGradient& by,
+                   const ShellLoads& rates);
 
 /// Mass with its derivatives. Throws as ShellSystem does.
 ShellGradient shell_mass(const ShellMesh& mesh,

@@ -36,6 +36,14 @@ void check_loads(const ShellMesh& mesh, const ShellLoads& loads) {
   if (loads.spin && !(loads.spin->axis.norm() > 0.0)) {
     throw InvalidInput("the spin of a shell has an axis without length");
   }
+  if (const auto& heat = loads.nodal_temperature;
+      heat && (heat->value.size() != nodes ||
+               (!heat->slope.empty() && std::ssize(heat->slope) != nodes))) {
+    throw InvalidInput(fmt::format(
+        "a shell of {} nodes has {} nodal temperatures and {} gradients of "
+        "them; give one a node",
+        nodes, heat->value.size(), heat->slope.size()));
+  }
   if (loads.nodal.size() != 0 && loads.nodal.size() != 6L * nodes) {
     throw InvalidInput(
         fmt::format("a shell of {} nodes has {} nodal forces and moments; give "
@@ -77,7 +85,8 @@ VectorX nodal_forces(const ShellMesh& mesh,
   }
   const std::vector<LaminateLaw> laws = laminate_laws(sections);
   const std::vector<FacetLoad> own = facet_loads(mesh, loads);
-  const bool everywhere = has_mass_loads(loads) || loads.temperature;
+  const bool everywhere =
+      has_mass_loads(loads) || loads.temperature || loads.nodal_temperature;
   std::vector<FacetVector> forces(mesh.facets.size(), FacetVector::Zero());
   parallel_for(static_cast<std::ptrdiff_t>(forces.size()),
                [&](std::ptrdiff_t k) {

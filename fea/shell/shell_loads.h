@@ -7,6 +7,7 @@
 
 #include "fea/loads/load_case.h"
 #include "fea/shell/shell_mesh.h"
+#include "fea/shell/wall_state.h"
 
 namespace meniscus::shell {
 
@@ -20,6 +21,13 @@ enum class WallSide { Negative, Middle, Positive };
 struct FacetPressure {
   int facet = 0;
   double pressure = 0.0;  // [pressure]
+  WallSide side = WallSide::Negative;
+};
+
+/// The same of a field, on a face: not in the middle.
+struct FieldPressure {
+  int facet = 0;
+  NodeValues pressure;  // [pressure]
   WallSide side = WallSide::Negative;
 };
 
@@ -53,6 +61,12 @@ struct WallTemperature {
   double across = 0.0;  // at the positive face less that at the negative one
 };
 
+/// Beside the mean one, a field at the middle of the wall.
+struct NodalTemperature {
+  VectorX value;  // one per node
+  Points slope;   // its gradient there, for derivatives only; may be empty
+};
+
 /// Force per mass at x: at_origin + slope x.
 struct MassForce {
   Vec3 at_origin = Vec3::Zero();  // [length/time^2]
@@ -66,6 +80,7 @@ MassForce mass_force_rate(const loads::Spin& spin, const loads::Spin& rates);
 
 struct ShellLoads {
   std::vector<FacetPressure> pressures;
+  std::vector<FieldPressure> field_pressures;
   std::vector<EdgePull> pulls;
   std::vector<EdgeTraction> tractions;
   std::vector<EdgeLoad> edges;
@@ -73,12 +88,13 @@ struct ShellLoads {
   std::optional<loads::Spin> spin;
   std::optional<MassForce> mass_force;
   std::optional<WallTemperature> temperature;
+  std::optional<NodalTemperature> nodal_temperature;
   VectorX nodal;  // forces and moments, 6 per node; empty: none
 };
 
 /// Consistent forces, 6 per node: force, moment. The same bits for any number
 /// of threads. Throws InvalidInput for facets and nodes that are not there, a
-/// spin without an axis, and nodal forces of another length.
+/// spin without an axis, and nodal forces or temperatures of another length.
 VectorX nodal_forces(const ShellMesh& mesh,
                      const std::vector<Section>& sections,
                      const ShellLoads& loads);

@@ -43,7 +43,7 @@ struct WallPoint {
   const FacetFrame<double>& frame;
   const FacetStrain<double>& strain;
   double thickness;
-  const WallState& state;
+  WallState state;
 };
 
 Stress stress_at(const WallPoint& point, double at, int number) {
@@ -108,16 +108,16 @@ class SolvedShell {
                       "six a node are needed",
                       mesh.nodes.size(), displacement.size()));
     }
-    const std::vector<FacetLoad> own = facet_loads(mesh, loads);
+    own_ = facet_loads(mesh, loads);
     bubbles_.resize(mesh.facets.size());
     states_.resize(mesh.facets.size());
     parallel_for(count(), [&](std::ptrdiff_t k) {
       const Facet facet =
           facet_of(mesh_, sections_, laws_, static_cast<int>(k));
       bubbles_[k] = bubble_rotation(
-          whole_stiffness(facet), facet_forces(facet, loads, own[k]),
+          whole_stiffness(facet), facet_forces(facet, loads, own_[k]),
           numbers_of(mesh_, static_cast<int>(k), displacement_));
-      states_[k] = wall_state(loads, own[k]);
+      states_[k] = wall_states(loads, own_[k]);
     });
   }
 
@@ -157,8 +157,8 @@ class SolvedShell {
       const FacetFrame<double> frame = facet_frame(X, p, facet.direction);
       const FacetStrain<double> strain =
           facet_strain(X, p, frame, field, bubble);
-      const WallStress wall = at(
-          WallPoint{facet, frame, strain, thickness_at(facet, p), states_[f]});
+      const WallStress wall = at(WallPoint{
+          facet, frame, strain, thickness_at(facet, p), states_[f].at(p)});
       for (int i = 0; i < kNodes; ++i) {
         add(result[i], node_share(i, q), wall);
       }
@@ -171,7 +171,8 @@ class SolvedShell {
   const VectorX& displacement_;
   std::vector<LaminateLaw> laws_;
   std::vector<Eigen::Vector2d> bubbles_;
-  std::vector<WallState> states_;
+  std::vector<FacetLoad> own_;
+  std::vector<WallStates> states_;
 };
 
 }  // namespace

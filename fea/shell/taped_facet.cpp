@@ -38,6 +38,7 @@ ShellGradient empty_gradient(const ShellMesh& mesh) {
   ShellGradient gradient;
   gradient.by_nodes.assign(mesh.nodes.size(), Vec3::Zero());
   gradient.by_thickness.assign(mesh.facets.size(), Vec3::Zero());
+  gradient.by_actions.facets.assign(mesh.facets.size(), ByLoads::Zero());
   return gradient;
 }
 
@@ -51,6 +52,8 @@ void add_facet(const ShellMesh& mesh, int f, const FacetGradient& part,
   constexpr int kFirst = 3 * kNodes;
   sum.by_thickness[f] +=
       Vec3(part.by[kFirst], part.by[kFirst + 1], part.by[kFirst + 2]);
+  sum.by_actions.facets[f] += part.by_loads;
+  sum.by_actions.mass.add(1.0, part.by_mass);
   const auto section = static_cast<std::size_t>(mesh.section[f]);
   sum.by_ply.resize(std::max(sum.by_ply.size(), section + 1));
   std::vector<PlyGradient>& plies = sum.by_ply[section];

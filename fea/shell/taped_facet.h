@@ -37,6 +37,8 @@ struct FacetGradient {
   double value = 0.0;
   ByShape by = {};
   std::vector<PlyGradient> by_ply;  // empty: 0
+  ByLoads by_loads = ByLoads::Zero();
+  ByMass by_mass = {};
 };
 
 /// With that by the nodes' numbers and the bubble's two.

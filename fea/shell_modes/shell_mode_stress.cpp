@@ -69,7 +69,7 @@ double strain_size(const PlyLaw& ply, const Vec3& elastic, const Vec3& plane) {
 struct ModeFacet {
   const Facet& facet;
   const Section& section;
-  const WallState& state;
+  WallStates states;
   FacetField u;
   Triple<double> bubble;
   FacetField x;
@@ -79,6 +79,7 @@ struct ModePoint {
   const ModeFacet& at;
   FacetFrame<double> frame;
   FacetStrain<double> strain;
+  WallState state;
   ModeSlopes slopes;
   double area = 0.0;
   double thickness = 0.0;
@@ -93,7 +94,7 @@ void add_layer(const ModePoint& point, const LayerPoint& layer,
   const Square<double> shift = shifter(point.frame.curvature, zeta);
   const Square<double> back = inverse(shift);
   const Vec3 elastic = as_vector(layer_strain(point.strain, back, zeta).plane) -
-                       at.state.free_strain(ply, layer.at);
+                       point.state.free_strain(ply, layer.at);
   const Vec3 s = ply.plane * elastic;
   std::array<Vec3, 2> U;
   for (int i = 0; i < 2; ++i) {
@@ -106,7 +107,7 @@ void add_layer(const ModePoint& point, const LayerPoint& layer,
         2.0 * s[2] * U[0].dot(U[1]));
   if (pushed > 0.0) {
     const double von_mises = element::von_mises(
-        {s[0], s[1], at.state.stress(layer.at), s[2], 0.0, 0.0});
+        {s[0], s[1], point.state.stress(layer.at), s[2], 0.0, 0.0});
     const double yield =
         at.section.laminate.plies[layer.ply].material.yield_strength.value_or(
             std::numeric_limits<double>::quiet_NaN());
@@ -126,6 +127,7 @@ WorkedSums facet_sums(const ModeFacet& at) {
     ModePoint point{at,
                     frame,
                     facet_strain(X, p, frame, at.u, at.bubble),
+                    at.states.at(p),
                     mode_slopes(at.x, p, frame),
                     p.weight * frame.area,
                     thickness_at(at.facet, p)};
@@ -158,11 +160,10 @@ modes::ModeStress mode_stress(const ShellMesh& mesh,
         const Eigen::Vector2d b = bubble_rotation(
             whole_stiffness(facet), facet_forces(facet, loads, own[k]), of_u);
         const auto axes = bubble_axes(triples(facet));
-        const WallState state = wall_state(loads, own[k]);
-        parts[k] = facet_sums({facet, sections[mesh.section[f]], state,
-                               Eigen::Map<const FacetField>(of_u.data()),
-                               bubble_turn(axes, b),
-                               Eigen::Map<const FacetField>(of_x.data())});
+        parts[k] = facet_sums(
+            {facet, sections[mesh.section[f]], wall_states(loads, own[k]),
+             Eigen::Map<const FacetField>(of_u.data()), bubble_turn(axes, b),
+             Eigen::Map<const FacetField>(of_x.data())});
       });
   WorkedSums all;
   for (const WorkedSums& part : parts) {

@@ -34,7 +34,7 @@ T work_at(const StressedFacet& at, const std::array<Triple<T>, kNodes>& X,
           const Triple<T>& bubble, const T& thickness) {
   const FacetStrain<T> strain = facet_strain(X, p, frame, at.u, bubble);
   return second_work(p, frame,
-                     facet_resultants<T>({at.facet, at.loads, at.own, frame,
+                     facet_resultants<T>({at.facet, at.loads, at.own, p, frame,
                                           strain, thickness}),
                      at.x);
 }
@@ -80,14 +80,16 @@ FacetResultants<double> by_resultants(const FacetPoint& p,
   return by;
 }
 
-/// By the law, at one point of which the area is `area`: facet_resultants()
-/// transposed.
-void add_by_law(const StressedFacet& at, const FacetFrame<double>& frame,
+/// By the law and the loads, at one point of which the area is `area`:
+/// facet_resultants() transposed.
+void add_by_law(const StressedFacet& at, const FacetPoint& p,
+                const FacetFrame<double>& frame,
                 const FacetStrain<double>& strain, double thickness,
                 const FacetResultants<double>& by, double area,
-                LawGradient& sum) {
+                LawGradient& sum, FacetGradient& loads) {
   const LaminateLaw& law = *at.facet.law;
-  const WallState state = wall_state(at.loads, at.own);
+  const WallState state = wall_states(at.loads, at.own).at(p);
+  StateGradient by_state;
   for (const LayerPoint& layer : law.points) {
     const PlyLaw& ply = law.plies[layer.ply];
     PlyLaw& own = sum.by[layer.ply];
@@ -115,13 +117,24 @@ void add_by_law(const StressedFacet& at, const FacetFrame<double>& frame,
         on_stress *
         (as_vector(e.plane) - state.free_strain(ply, layer.at)).transpose();
     const Vec3 on_free = -ply.plane.transpose() * on_stress;
-    own.expansion += state.heat(layer.at) * on_free;
-    own.squeeze += state.stress(layer.at) * on_free;
+    by_state.add_free_strain(state, ply, layer.at, on_free, own);
     sum.by_across += on_shear * Eigen::RowVector2d(e.across[0], e.across[1]);
-    own.density += weight * zeta * as_vector(by.lever).dot(at.loads.gravity);
+    const Vec3 lever = weight * zeta * as_vector(by.lever);
+    own.density += lever.dot(at.loads.gravity);
+    loads.by_mass.gravity += ply.density * lever;
   }
   sum.by_mean_shear += area * by.drilling * kDrilling * thickness *
                        (strain.stretch[0][1] - strain.stretch[1][0]);
+  by_state.add_to(p, loads.by_loads);
+  const double lever = area * as_vector(by.lever).dot(as_vector(frame.axes[2]));
+  const auto push = [&](double place) {
+    const double zeta = (place + at.facet.offset) * thickness;
+    return lever * zeta * determinant(shifter(frame.curvature, zeta));
+  };
+  const Vec3 pushed(0.0, push(-0.5), push(0.5));
+  for (int i = 0; i < kNodes; ++i) {
+    loads.by_loads.col(i) += p.shape[i] * pushed;
+  }
 }
 
 /// By the nodes' numbers and the bubble, which resultants are linear in, and by
@@ -141,8 +154,8 @@ void add_by_numbers(const StressedFacet& at, WholeGradient& work) {
     const FacetFrame<double> frame = facet_frame(X, p, at.facet.direction);
     const double area = p.weight * frame.area;
     const double t = thickness_at(at.facet, p);
-    add_by_law(at, frame, facet_strain(X, p, frame, at.u, turned), t,
-               by_resultants(p, frame, at.x), area, by_law);
+    add_by_law(at, p, frame, facet_strain(X, p, frame, at.u, turned), t,
+               by_resultants(p, frame, at.x), area, by_law, work);
     for (int n = 0; n < kUnknowns; ++n) {
       unit.u(n % 6, n / 6) = 1.0;
       work.by_whole[n] += area * work_at(unit, X, p, frame, still, t);
@@ -154,6 +167,7 @@ void add_by_numbers(const StressedFacet& at, WholeGradient& work) {
     }
   }
   work.by_ply = by_law.by_ply();
+  add_field_slopes(at.own, work.by_loads, work.by.data());
 }
 
 FacetField field_of(const ShellMesh& mesh, int facet, const VectorX& nodal) {
@@ -170,6 +184,16 @@ void add_gradient(double factor, const ShellGradient& more,
     sum.by_thickness[f] += factor * more.by_thickness[f];
   }
   add_plies(factor, more.by_ply, sum.by_ply);
+  sum.by_actions.add(factor, more.by_actions);
+}
+
+/// -x . K x, which no loads change.
+ShellGradient minus_stiffness_work(const ShellMesh& mesh,
+                                   const std::vector<Section>& sections,
+                                   const VectorX& x) {
+  ShellGradient gradient = residual_gradient(mesh, sections, {}, x, x);
+  gradient.by_actions = {};
+  return gradient;
 }
 
 /// Twice the kinetic energy of unit frequency of one facet.
@@ -200,7 +224,8 @@ FacetGradient facet_inertia(const Facet& facet, const FacetField& x,
     }
     sum = sum + p.weight * frame.area * density;
   }
-  return {sum.value, taped.transpose(sum), std::move(by_ply)};
+  return {
+      sum.value, taped.transpose(sum), std::move(by_ply), ByLoads::Zero(), {}};
 }
 
 }  // namespace
@@ -290,8 +315,7 @@ ModeWork factor_functional(const ShellMesh& mesh,
     const double by_stiffness = -weight / geometric.value;
     const double by_geometric = modes.values[k] * by_stiffness;
     result.value += weight * modes.values[k];
-    // Of -x^T K x:
-    add_gradient(-by_stiffness, residual_gradient(mesh, sections, {}, x, x),
+    add_gradient(-by_stiffness, minus_stiffness_work(mesh, sections, x),
                  result);
     add_gradient(by_geometric, geometric, result);
     result.by_displacement += by_geometric * geometric.by_displacement;
@@ -316,7 +340,7 @@ ModeWork frequency_functional(const ShellMesh& mesh,
     const double by_stiffness =
         weight / (2.0 * kTurn * kTurn * frequency * inertia.value);
     result.value += weight * frequency;
-    add_gradient(-by_stiffness, residual_gradient(mesh, sections, {}, x, x),
+    add_gradient(-by_stiffness, minus_stiffness_work(mesh, sections, x),
                  result);
     add_gradient(-std::pow(kTurn * frequency, 2) * by_stiffness, inertia,
                  result);

@@ -134,12 +134,12 @@ T stress_work(const Facet& facet, const WallState& state,
   return sum;
 }
 
-/// By the law: stress_work() transposed.
+/// By the law and the state: stress_work() transposed.
 void add_by_law(const Facet& facet, const WallState& state,
                 const FacetFrame<double>& frame,
                 const FacetStrain<double>& strain, double thickness,
                 const std::vector<std::array<Mat3, kHeights>>& tensors,
-                LawGradient& sum) {
+                LawGradient& sum, StateGradient& by_state) {
   const LaminateLaw& law = *facet.law;
   Mat3 axes;
   axes << as_vector(frame.axes[0]), as_vector(frame.axes[1]),
@@ -157,8 +157,8 @@ void add_by_law(const Facet& facet, const WallState& state,
           on * (as_vector(e.plane) - state.free_strain(law.plies[p], at))
                    .transpose();
       const Vec3 on_free = -law.plies[p].plane.transpose() * on;
-      by.expansion += state.heat(at) * on_free;
-      by.squeeze += state.stress(at) * on_free;
+      by_state.add_free_strain(state, law.plies[p], at, on_free, by);
+      by_state.add_stress(at, A(2, 2));
       sum.by_across += (3.0 - 12.0 * at * at) *
                        Eigen::Vector2d(A(0, 2), A(1, 2)) *
                        Eigen::RowVector2d(e.across[0], e.across[1]);
@@ -169,7 +169,7 @@ void add_by_law(const Facet& facet, const WallState& state,
 /// One facet under one state.
 struct LoadedFacet {
   Facet facet;
-  WallState state;
+  WallStates states;
   FacetField field;
   Eigen::Vector2d bubble;
 };
@@ -186,7 +186,7 @@ WholeGradient facet_gradient(const LoadedFacet& solved,
     const FacetPoint& p = stress_points()[q];
     const FacetFrame<Taped> frame = facet_frame(taped.X, p, facet.direction);
     sum = sum + stress_work<Taped>(
-                    facet, solved.state, frame,
+                    facet, solved.states.at(p), frame,
                     facet_strain(taped.X, p, frame, solved.field, of_u),
                     taped.thickness_at(p), tensors.at[q]);
   }
@@ -200,9 +200,11 @@ WholeGradient facet_gradient(const LoadedFacet& solved,
     const FacetPoint& p = stress_points()[q];
     const FacetFrame<double> frame = facet_frame(X, p, facet.direction);
     const double t = thickness_at(facet, p);
-    add_by_law(facet, solved.state, frame,
+    StateGradient by_state;
+    add_by_law(facet, solved.states.at(p), frame,
                facet_strain(X, p, frame, solved.field, bubble), t,
-               tensors.at[q], by_law);
+               tensors.at[q], by_law, by_state);
+    by_state.add_to(p, gradient.by_loads);
     const auto work = [&](const FacetField& field,
                           const Triple<double>& turned) {
       return stress_work<double>(facet, {}, frame,
@@ -374,10 +376,11 @@ class PeakOfShell {
           const FacetVector u = numbers_of(in_.mesh, f, state.displacement);
           const WholeMatrix K = whole_stiffness(facet);
           parts[k] = facet_gradient(
-              {facet, wall_state(state.loads, own[k]),
+              {facet, wall_states(state.loads, own[k]),
                Eigen::Map<const FacetField>(u.data()),
                bubble_rotation(K, facet_forces(facet, state.loads, own[k]), u)},
               tensors, tape);
+          add_field_slopes(own[k], parts[k].by_loads, parts[k].by.data());
           // The bubble follows the nodes: condensed as forces are.
           on_bubbles[k] = parts[k].by_whole.tail<2>();
           condensed(K, &parts[k].by_whole);
@@ -403,6 +406,7 @@ class PeakOfShell {
       bound.by_thickness[f] += sum.by_thickness[f];
     }
     add_plies(1.0, sum.by_ply, bound.by_ply);
+    bound.by_state_actions.push_back(std::move(sum.by_actions));
   }
 
   const ShellPeakInput& in_;

@@ -32,7 +32,8 @@ struct ShellPeakInput {
 /// Derivatives with nodal displacements held, not the bubbles, which follow
 /// them.
 struct ShellPeakBound : ShellGradient {
-  std::vector<VectorX> by_displacement;  // per state
+  std::vector<VectorX> by_displacement;          // per state
+  std::vector<ActionGradient> by_state_actions;  // the same
   /// The states' stresses where the value is largest, the first of equals.
   std::vector<element::Stress> largest;
 };

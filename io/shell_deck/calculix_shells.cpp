@@ -276,7 +276,13 @@ class ShellWriter {
       }
     }
     if (is_heated(deck_)) {
-      add("*TEMPERATURE, OP=NEW\nNALL, {:.12e}\n", step.temperature_change);
+      add("*TEMPERATURE, OP=NEW\n");
+      if (step.nodal_temperatures.size() == 0) {
+        add("NALL, {:.12e}\n", step.temperature_change);
+      }
+      for (int n = 0; n < step.nodal_temperatures.size(); ++n) {
+        add("{}, {:.12e}\n", n + 1, step.temperature_at(n));
+      }
     }
     // Both cards in every step: without them the last step's loads stay.
     add("*CLOAD, OP=NEW\n");

@@ -240,8 +240,9 @@ class ShellBulk {
       // Every node: a default is one for all subcases to some readers.
       for (std::size_t n = 0; n < deck_.nodes.size(); ++n) {
         text_ += io::long_card(
-            "TEMP", {number(heat_set(k)), number(static_cast<int>(n) + 1),
-                     io::nastran_real(step.temperature_change)});
+            "TEMP",
+            {number(heat_set(k)), number(static_cast<int>(n) + 1),
+             io::nastran_real(step.temperature_at(static_cast<int>(n)))});
       }
     }
     const io::Fields sets = sets_of_load(step, k);

@@ -120,10 +120,16 @@ std::optional<double> even_thickness(const ShellDeck& deck, int section) {
   return even;
 }
 
+double DeckShellStep::temperature_at(int node) const {
+  return temperature_change +
+         (nodal_temperatures.size() > 0 ? nodal_temperatures[node] : 0.0);
+}
+
 bool is_heated(const ShellDeck& deck) {
   return std::any_of(
-      deck.steps.begin(), deck.steps.end(),
-      [](const DeckShellStep& s) { return s.temperature_change != 0.0; });
+      deck.steps.begin(), deck.steps.end(), [](const DeckShellStep& s) {
+        return s.temperature_change != 0.0 || s.nodal_temperatures.size() > 0;
+      });
 }
 
 std::array<double, 6> held_values(const DeckShellStep& step, int node,

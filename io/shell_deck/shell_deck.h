@@ -61,6 +61,9 @@ struct DeckShellStep {
   Vec3 gravity = Vec3::Zero();  // force per mass [length/time^2]
   std::optional<io::DeckSpin> spin;
   double temperature_change = 0.0;  // of all nodes
+  VectorX nodal_temperatures;       // changes beside it; may be empty
+
+  double temperature_at(int node) const;
 };
 
 struct ShellDeck {

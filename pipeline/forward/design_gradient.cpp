@@ -378,7 +378,9 @@ double Adjoint::load_rate(const Backward& backward, std::size_t k,
   if (part.solid) {
     return shells::joint_work_rate(part, load_case, by, v);
   }
-  double rate = shells::work_rate(part, load_case, by, v);
+  double rate = shells::work_rate(part, load_case, by, v) +
+                shells::action_rate(part, load_case, by,
+                                    backward.partials.cases[k].by_actions);
   if (loads::enforces(load_case)) {
     rate += shells::held_rate(part, load_case, by, back.adjoint_reactions);
   }

@@ -25,17 +25,23 @@ constexpr double kLargestOfInterest = 1e3;
 constexpr int kLeastSteps = 40;
 constexpr int kMostSteps = 150;
 
-/// Where the matrix is not in one process.
-bool left_out(const case_data::AnalysisEntry& analysis) {
-  return analysis.solver == equations::SolverKind::Distributed;
+/// Why there are no factors that nobody asked for; empty where there are.
+const char* left_out(const case_data::AnalysisEntry& analysis,
+                     const EvaluationFields& fields) {
+  if (analysis.solver == equations::SolverKind::Distributed) {
+    return "no buckling factors: the solver petsc keeps its matrix in other "
+           "processes; another solver, or a coarser mesh with one, gives them";
+  }
+  if (fields.shell && fields.shell->solid) {
+    return "no buckling factors: shells beside solids have none yet; a case of "
+           "shells alone, or of solids, gives them";
+  }
+  return "";
 }
 
 modes::BucklingOptions buckling_options(
     const case_data::AnalysisEntry& analysis,
     const equations::ElasticReport& solve, Monitor* monitor) {
-  if (left_out(analysis)) {
-    return {.count = 0};
-  }
   if (!analysis.buckling) {
     return {
         .tolerance = kRoughly,
@@ -133,16 +139,18 @@ EigenFigures eigen_figures(const case_data::Case& input,
       fields.shell ? fields.solution.report : model->base_solution().report,
       monitor);
   options.materials = &fields.inputs.materials;
+  const std::string none = left_out(analysis, fields);
+  if (!none.empty()) {
+    options.count = 0;
+  }
   for (std::size_t c = 0; c < cases.size() && options.count > 0; ++c) {
     if (is_unit_load(fields, c) && !analysis.buckling) {
       continue;
     }
     figures.buckling.push_back(buckling_of(fields, cases, model, c, options));
   }
-  if (left_out(analysis) && !analysis.buckling) {
-    figures.remark =
-        "no buckling factors: the solver petsc keeps its matrix in other "
-        "processes; another solver, or a coarser mesh with one, gives them";
+  if (!analysis.buckling) {
+    figures.remark = none;
   }
   for (const WorstCase& worst : fields.worst_cases) {
     if (!analysis.buckling && figures.remark.empty()) {

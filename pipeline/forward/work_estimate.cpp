@@ -15,9 +15,13 @@ namespace {
 constexpr double kElementsPerCube = 8.2;
 constexpr double kElementsPerFacet = 1.5;
 constexpr double kBytesPerElement = 4200.0;
-constexpr double kBytesPerFacet = 46000.0;  // docs/performance.md, Shells
-constexpr double kMostElements = 1e8;       // numbers of unknowns are int
-constexpr double kSmall = 3e7;              // [byte] not worth a question
+// Of shells: one factor, or substructures whose factors are not kept
+// (docs/performance.md, Shells).
+constexpr double kBytesPerFacet = 46000.0;
+constexpr double kBytesPerCutFacet = 15000.0;
+constexpr double kBytesUncut = 3e8;
+constexpr double kMostElements = 1e8;  // numbers of unknowns are int
+constexpr double kSmall = 3e7;         // [byte] not worth a question
 
 /// "110,000": two digits that count.
 std::string rounded(double count) {
@@ -80,7 +84,8 @@ void require_work(const WorkEstimate& work, double edge) {
 
 void require_shell_work(std::size_t facets, double edge) {
   const auto count = static_cast<double>(facets);
-  const double bytes = kBytesPerFacet * count;
+  const double bytes =
+      std::min(kBytesPerFacet * count, kBytesPerCutFacet * count + kBytesUncut);
   const double free = available_memory();
   if (bytes <= kSmall || bytes <= free) {
     return;

@@ -45,6 +45,7 @@ struct CasePartials {
   std::optional<double> of_first = {};
   VectorX by_forces;       // 3 per node, of shells 6 [value/force]
   VectorX by_temperature;  // per node [value/temperature]
+  shell::ActionGradient by_actions = {};  // of shells, beside by_forces
 };
 
 /// One response's value and its partial derivatives, all else held. What is

@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include "fea/shell/shell_moments.h"
-#include "fea/shell/shell_norm.h"
 #include "fea/shell_modes/shell_mode_works.h"
+#include "fea/shell_peaks/shell_norm.h"
 #include "fea/stress/peak_stress.h"
 #include "pipeline/responses/response_partials.h"
 #include "pipeline/shells/joint_part.h"
@@ -203,7 +203,8 @@ ResponsePartials shell_stress_mean(const ResponseTask& task) {
   result.cases.push_back({.load_case = response.load_case,
                           .by_displacement = std::move(norm.by_displacement),
                           .by_forces = {},
-                          .by_temperature = {}});
+                          .by_temperature = {},
+                          .by_actions = std::move(norm.by_actions)});
   return result;
 }
 
@@ -221,11 +222,13 @@ ResponsePartials shell_modal(const ResponseTask& task) {
       shell::ModeWork work = shell::factor_functional(
           part.mesh, part.sections, own.actions.loads, own.displacement, modes);
       VectorX by_displacement = std::move(work.by_displacement);
+      shell::ActionGradient by_actions = std::move(work.by_actions);
       result = shell_to_partials(part, std::move(work));
       result.cases.push_back({.load_case = found.load_case,
                               .by_displacement = std::move(by_displacement),
                               .by_forces = {},
-                              .by_temperature = {}});
+                              .by_temperature = {},
+                              .by_actions = std::move(by_actions)});
     } else {
       result = shell_to_partials(
           part, shell::frequency_functional(part.mesh, part.sections, modes));

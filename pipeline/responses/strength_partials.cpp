@@ -47,12 +47,17 @@ ResponsePartials shell_peak_partials(
        task.response.excess, task.derivatives},
       criterion);
   std::vector<VectorX> by_displacement = std::move(bound.by_displacement);
+  std::vector<shell::ActionGradient> by_actions =
+      std::move(bound.by_state_actions);
   ResponsePartials result = shell_to_partials(part, std::move(bound));
   for (std::size_t s = 0; s < by_displacement.size(); ++s) {
     result.cases.push_back({.load_case = load_cases[s],
                             .by_displacement = std::move(by_displacement[s]),
                             .by_forces = {},
                             .by_temperature = {}});
+    if (!by_actions.empty()) {
+      result.cases.back().by_actions = std::move(by_actions[s]);
+    }
   }
   return result;
 }

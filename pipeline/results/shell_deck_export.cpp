@@ -79,6 +79,7 @@ shell_deck::DeckShellStep shell_step_of(const shells::ShellPart& part,
   others.gravity.setZero();
   others.spin.reset();
   others.temperature.reset();
+  others.nodal_temperature.reset();
   step.nodal_forces = shell::nodal_forces(part.mesh, part.sections, others);
   for (const shell::FacetPressure& p : all.pressures) {
     step.pressures.push_back({p.facet, p.pressure});
@@ -86,6 +87,9 @@ shell_deck::DeckShellStep shell_step_of(const shells::ShellPart& part,
   step.gravity = all.gravity;
   if (all.temperature) {
     step.temperature_change = all.temperature->mean;
+  }
+  if (all.nodal_temperature) {
+    step.nodal_temperatures = all.nodal_temperature->value;
   }
   if (all.spin) {
     step.spin = io::DeckSpin{all.spin->point, all.spin->axis, all.spin->rate};

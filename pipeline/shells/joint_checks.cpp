@@ -46,9 +46,9 @@ class JointChecks {
       check_response(response);
     }
     if (input_.analysis.frequencies > 0 ||
-        input_.analysis.buckling.value_or(1) > 0) {
+        input_.analysis.buckling.value_or(0) > 0) {
       refuse(0, "natural frequencies and buckling factors",
-             "give analysis.buckling = 0, and no frequencies");
+             "take them out of [analysis]");
     }
   }
 

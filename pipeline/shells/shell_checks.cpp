@@ -26,7 +26,7 @@ const std::vector<case_data::ResponseKind>& kinds_of_shells() {
   return kinds;
 }
 
-/// A traction, a pressure or a temperature.
+/// A traction or a pressure.
 bool is_of_place(const case_data::LoadEntry& load) {
   return load.place.of_place ||
          std::any_of(load.traction.begin(), load.traction.end(),
@@ -167,9 +167,8 @@ class ShellChecks {
         }
         break;
       case case_data::LoadKind::Pressure:
-        if (is_of_place(load)) {
-          refuse("a pressure of place",
-                 "give a film one number, or a traction of place");
+        if (on_rim && is_of_place(load)) {
+          refuse("a pressure of place on a rim", "give the rim one number");
         }
         break;
       case case_data::LoadKind::RimTension:
@@ -177,14 +176,10 @@ class ShellChecks {
           refuse("a rim_tension on what is no rim", "name FILM/rim:CURVE");
         }
         break;
-      case case_data::LoadKind::Temperature:
-        if (is_of_place(load)) {
-          refuse("a temperature of place", "give it one number");
-        }
-        break;
       case case_data::LoadKind::Preload:
         refuse("a bolt", "give its force to a film or a rim");
         break;
+      case case_data::LoadKind::Temperature:
       case case_data::LoadKind::Spin:
       case case_data::LoadKind::Gravity:
         break;
@@ -210,8 +205,6 @@ class ShellChecks {
                                 response.name));
     } else if (response.kind == case_data::ResponseKind::StrainEnergy) {
       check_energy_of_loads(response);
-    } else {
-      check_stress_by_loads(response);
     }
   }
 
@@ -226,55 +219,6 @@ class ShellChecks {
             fmt::format("responses.{} is the strain_energy of load case '{}', "
                         "which has a temperature; of shells take compliance",
                         response.name, load_case.name));
-      }
-    }
-  }
-
-  /// What loads change stresses by beside what they move a wall by.
-  void check_stress_by_loads(const case_data::ResponseEntry& response) {
-    using K = case_data::ResponseKind;
-    if (response.kind == K::Fatigue) {
-      for (const int load_case : response.load_cases) {
-        check_stress_by_loads(response, load_case);
-      }
-    } else if (response.kind == K::VonMisesNorm ||
-               response.kind == K::VonMisesKs ||
-               response.kind == K::StressRatio ||
-               response.kind == K::BucklingFactor) {
-      check_stress_by_loads(response, response.load_case);
-    }
-  }
-
-  void check_stress_by_loads(const case_data::ResponseEntry& response,
-                             int load_case) {
-    const case_data::LoadCaseEntry& of =
-        input_.load_cases[static_cast<std::size_t>(load_case)];
-    for (const case_data::LoadEntry& load : of.loads) {
-      const char* follows = nullptr;
-      if (load.kind == case_data::LoadKind::Pressure &&
-          !is_rim(load.surfaces.front()) &&
-          follows_design(load.place.quantity)) {
-        follows = "pressure";
-      } else if (load.kind == case_data::LoadKind::Temperature &&
-                 (follows_design(load.place.quantity) ||
-                  follows_design(load.number))) {
-        follows = "temperature";
-      } else if (load.kind == case_data::LoadKind::Gravity &&
-                 follows_design(load.vector)) {
-        follows = "gravity";
-      } else if (load.kind == case_data::LoadKind::Spin &&
-                 (follows_design(load.number) || follows_design(load.vector) ||
-                  follows_design(load.at))) {
-        follows = "spin";
-      }
-      if (follows != nullptr) {
-        problems_.add(
-            response.line,
-            fmt::format("responses.{} is of load case '{}', whose {} follows "
-                        "the design, which {} of shells cannot yet; give it "
-                        "a fixed number",
-                        response.name, of.name, follows,
-                        case_data::row_of(response.kind).name));
       }
     }
   }

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "fea/element/stress_measures.h"
+#include "fea/loads/load_checks.h"
 #include "fea/loads/load_rates.h"
 #include "fea/loads/loads.h"
 #include "fea/supports/surface_load_gradient.h"
@@ -23,17 +24,60 @@ loads::Surfaces films_of(const loads::Surfaces& surfaces) {
   return films;
 }
 
+/// Of a load's field at the nodes of one facet, `factor` times.
+shell::NodeValues values_at(const ShellPart& part, int facet,
+                            const loads::SurfacePressure& load, double factor,
+                            const loads::LoadCase& load_case) {
+  shell::NodeValues values;
+  for (std::size_t i = 0; i < values.value.size(); ++i) {
+    const Vec3& x = part.mesh.nodes[part.mesh.facets[facet][i]];
+    values.value[i] =
+        factor * loads::field_value(load.field, x, load_case, "a pressure");
+    if (load.slope) {
+      values.slope[i] = factor * load.slope(x);
+    }
+  }
+  return values;
+}
+
 void add_pressure(const ShellPart& part, const loads::SurfacePressure& load,
-                  shell::ShellLoads& sum) {
+                  const loads::LoadCase& load_case, shell::ShellLoads& sum) {
   const int label = part.skin.label_of(film_of(load.surface));
   const bool on_back = load.surface.ends_with("/back");
+  const double sign = on_back ? 1.0 : -1.0;
+  const auto side =
+      on_back ? shell::WallSide::Negative : shell::WallSide::Positive;
   for (int f = 0; f < part.skin.face_count(); ++f) {
-    if (part.skin.face_label[f] == label) {
+    if (part.skin.face_label[f] != label) {
+      continue;
+    }
+    if (load.field) {
+      sum.field_pressures.push_back(
+          {f, values_at(part, f, load, sign, load_case), side});
+    } else {
       sum.pressures.push_back(
-          {.facet = f,
-           .pressure = on_back ? load.pressure : -load.pressure,
-           .side = on_back ? shell::WallSide::Negative
-                           : shell::WallSide::Positive});
+          {.facet = f, .pressure = sign * load.pressure, .side = side});
+    }
+  }
+}
+
+/// Changes from the reference, where the field has its places.
+void set_temperature(const ShellPart& part, const loads::LoadCase& load_case,
+                     shell::ShellLoads& sum) {
+  const loads::Temperature& heat = *load_case.temperature;
+  if (!heat.field) {
+    sum.temperature = {.mean = heat.value - heat.reference};
+    return;
+  }
+  shell::NodalTemperature& nodal = sum.nodal_temperature.emplace();
+  nodal.value.resize(std::ssize(part.mesh.nodes));
+  for (std::size_t i = 0; i < part.mesh.nodes.size(); ++i) {
+    const Vec3& x = part.mesh.nodes[i];
+    nodal.value[static_cast<Eigen::Index>(i)] =
+        loads::field_value(heat.field, x, load_case, "a temperature") -
+        heat.reference;
+    if (heat.slope) {
+      nodal.slope.push_back(heat.slope(x));
     }
   }
 }
@@ -113,12 +157,12 @@ shell::ShellLoads facet_loads_of(const ShellPart& part,
                                  const loads::LoadCase& load_case) {
   shell::ShellLoads result;
   result.gravity = load_case.gravity;
-  if (const auto& heat = load_case.temperature) {
-    result.temperature = {.mean = heat->value - heat->reference};
+  if (load_case.temperature) {
+    set_temperature(part, load_case, result);
   }
   for (const loads::SurfacePressure& load : load_case.pressures) {
     if (!is_rim(load.surface)) {
-      add_pressure(part, load, result);
+      add_pressure(part, load, load_case, result);
       continue;
     }
     for (const auto& [facet, edge] : edges_on(part, load.surface)) {
@@ -223,15 +267,36 @@ shell::ShellGradient work_gradient(const ShellPart& part, std::size_t load_case,
   return gradient;
 }
 
+namespace {
+
+shell::ShellLoads facet_rates_of(const ShellPart& part,
+                                 const loads::LoadCase& load_case,
+                                 const loads::LoadCase& rates) {
+  shell::ShellLoads own = facet_loads_of(part, rates);
+  if (load_case.spin) {
+    own.mass_force = shell::mass_force_rate(*load_case.spin, *rates.spin);
+  }
+  return own;
+}
+
+}  // namespace
+
+double action_rate(const ShellPart& part, const loads::LoadCase& load_case,
+                   const loads::LoadCase& rates,
+                   const shell::ActionGradient& by) {
+  if (by.facets.empty() || !loads::changes(rates)) {
+    return 0.0;
+  }
+  return shell::action_rate(part.mesh, by,
+                            facet_rates_of(part, load_case, rates));
+}
+
 double work_rate(const ShellPart& part, const loads::LoadCase& load_case,
                  const loads::LoadCase& rates, const VectorX& v) {
   if (!loads::changes(rates)) {  // by most variables
     return 0.0;
   }
-  shell::ShellLoads own = facet_loads_of(part, rates);
-  if (load_case.spin) {
-    own.mass_force = shell::mass_force_rate(*load_case.spin, *rates.spin);
-  }
+  const shell::ShellLoads own = facet_rates_of(part, load_case, rates);
   double rate = v.dot(shell::nodal_forces(part.mesh, part.sections, own));
   const loads::LoadCase films = on_films(load_case);
   if (acts_on_films(films)) {

@@ -93,6 +93,12 @@ ShellActions shell_actions(const ShellPart& part,
 shell::ShellGradient work_gradient(const ShellPart& part, std::size_t load_case,
                                    const VectorX& v, const VectorX& u);
 
+/// What a value changes by at fixed displacements as the load case's numbers
+/// do at `rates`; of an empty gradient 0.
+double action_rate(const ShellPart& part, const loads::LoadCase& load_case,
+                   const loads::LoadCase& rates,
+                   const shell::ActionGradient& by);
+
 /// v . df for the load case's numbers that change at `rates`.
 double work_rate(const ShellPart& part, const loads::LoadCase& load_case,
                  const loads::LoadCase& rates, const VectorX& v);

@@ -118,9 +118,6 @@ load_case = "many"
 [responses.peak]
 kind = "max_von_mises"
 load_case = "tip"
-
-[analysis]
-buckling = 0
 """
 
 MODULUS = 1000
@@ -248,9 +245,6 @@ kind = "compliance"
 
 [responses.peak]
 kind = "max_von_mises"
-
-[analysis]
-buckling = 0
 """
 
 class JointTest(ProgramTest):
@@ -307,7 +301,8 @@ class JointTest(ProgramTest):
 
     def test_says_what_both_cannot_do(self):
         wrong = [
-            ("buckling = 0", "buckling = 1", "buckling factors cannot yet"),
+            ("[resolution]", "[analysis]\nbuckling = 1\n\n[resolution]",
+             "buckling factors cannot yet"),
             ('kind = "volume"', 'kind = "uniformity"',
              "responses.volume"),
             ('on = "base/left", fix = "xyz" }', 'on = "plate/rim:end", '
@@ -326,7 +321,7 @@ class JointTest(ProgramTest):
              "a load on both together cannot yet"),
             ('youngs_modulus = 1000', 'youngs_modulus = "100 * out"',
              "'model', which follows the design, cannot yet"),
-            ("buckling = 0", "buckling = 0\nadapt = true",
+            ("[resolution]", "[analysis]\nadapt = true\n\n[resolution]",
              "analysis.adapt is of solids"),
         ]
         for old, new, said in wrong:

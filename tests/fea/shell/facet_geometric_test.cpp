@@ -148,8 +148,9 @@ double work_on_strains(const DrawnFacet& drawn, const FacetVector& x,
   for (const FacetPoint& p : facet_rule()) {
     const FacetFrame<double> frame = facet_frame(X, p, nullptr);
     const FacetStrain<double> strain = facet_strain(X, p, frame, field, bubble);
-    const FacetResultants<double> r = facet_resultants<double>(
-        {facet, drawn.loads, drawn.own, frame, strain, thickness_at(facet, p)});
+    const FacetResultants<double> r =
+        facet_resultants<double>({facet, drawn.loads, drawn.own, p, frame,
+                                  strain, thickness_at(facet, p)});
     const auto along = [&](int i, const auto& by_coordinate) -> Vec3 {
       return frame.by_axis[i][0] * by_coordinate(0) +
              frame.by_axis[i][1] * by_coordinate(1);

@@ -7,9 +7,9 @@
 
 #include "fea/shell/shell_gradient.h"
 #include "fea/shell/shell_moments.h"
-#include "fea/shell/shell_norm.h"
 #include "fea/shell/shell_system.h"
 #include "fea/shell_modes/shell_mode_works.h"
+#include "fea/shell_peaks/shell_norm.h"
 #include "tests/support/derivatives.h"
 #include "tests/support/shell_shapes.h"
 

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "fea/shell/shell_norm.h"
 #include "fea/shell/shell_system.h"
+#include "fea/shell_peaks/shell_norm.h"
 #include "tests/support/derivatives.h"
 #include "tests/support/shell_shapes.h"
 

@@ -8,8 +8,8 @@
 
 #include "core/error.h"
 #include "fea/functionals/stress_criteria.h"
-#include "fea/shell/shell_norm.h"
 #include "fea/shell/shell_stress.h"
+#include "fea/shell_peaks/shell_norm.h"
 #include "tests/support/derivatives.h"
 #include "tests/support/shell_shapes.h"
 

@@ -1,4 +1,4 @@
-#include "fea/shell/shell_norm.h"
+#include "fea/shell_peaks/shell_norm.h"
 
 #include <algorithm>
 #include <array>
@@ -76,7 +76,7 @@ struct FaceSquares {
 /// One facet with its solution.
 struct SolvedFacet {
   Facet facet;
-  WallState state;
+  WallStates states;
   FacetField field;
   Eigen::Vector2d bubble;
   WholeMatrix stiffness;
@@ -86,13 +86,13 @@ FaceSquares squares_of(const SolvedFacet& solved) {
   const Facet& facet = solved.facet;
   const auto X = triples(facet);
   const Triple<double> bubble = bubble_turn(bubble_axes(X), solved.bubble);
-  const std::vector<WallFace> faces = faces_of(facet, solved.state);
   FaceSquares result;
   for (int q = 0; q < 3; ++q) {
     const FacetPoint& p = stress_points()[q];
     const FacetFrame<double> frame = facet_frame(X, p, facet.direction);
     const FacetStrain<double> strain =
         facet_strain(X, p, frame, solved.field, bubble);
+    const std::vector<WallFace> faces = faces_of(facet, solved.states.at(p));
     result.share[q] = kPointWeight * frame.area;
     result.area += result.share[q];
     for (const WallFace& face : faces) {
@@ -145,14 +145,14 @@ ByShape norm_by_shape(const SolvedFacet& solved, const NormTerms& terms,
   const Facet& facet = solved.facet;
   const TapedFacet taped(facet, tape);
   const Triple<Taped> bubble = taped.bubble(solved.bubble);
-  const std::vector<WallFace> faces = faces_of(facet, solved.state);
-  const double each = 1.0 / static_cast<double>(faces.size());
+  const double each = 0.5 / static_cast<double>(facet.law->plies.size());
   Taped sum(0.0);
   for (const FacetPoint& p : stress_points()) {
     const FacetFrame<Taped> frame = facet_frame(taped.X, p, facet.direction);
     const FacetStrain<Taped> strain =
         facet_strain(taped.X, p, frame, solved.field, bubble);
     const Taped thickness = taped.thickness_at(p);
+    const std::vector<WallFace> faces = faces_of(facet, solved.states.at(p));
     Taped here(terms.by_area);
     for (const WallFace& face : faces) {
       const Taped zeta = (face.at + facet.offset) * thickness;
@@ -182,31 +182,35 @@ void add_by_unknowns(const SolvedFacet& solved, const NormTerms& terms,
   const auto X = triples(facet);
   const auto axes = bubble_axes(X);
   const Triple<double> bubble = bubble_turn(axes, solved.bubble);
-  const std::vector<WallFace> faces = faces_of(facet, solved.state);
-  const double each = 1.0 / static_cast<double>(faces.size());
-  std::vector<double> zeta(faces.size());
-  std::vector<Vec3> by_plane(faces.size());
+  const std::size_t count = 2 * facet.law->plies.size();
+  const double each = 1.0 / static_cast<double>(count);
+  std::vector<double> zeta(count);
+  std::vector<Vec3> by_plane(count);
   LawGradient by_law(*facet.law);
   for (const FacetPoint& p : stress_points()) {
     const FacetFrame<double> frame = facet_frame(X, p, facet.direction);
     const FacetStrain<double> strain =
         facet_strain(X, p, frame, solved.field, bubble);
+    const WallState state = solved.states.at(p);
+    const std::vector<WallFace> faces = faces_of(facet, state);
+    StateGradient by_state;
     for (std::size_t k = 0; k < faces.size(); ++k) {
       const WallFace& face = faces[k];
       zeta[k] = (face.at + facet.offset) * thickness_at(facet, p);
       const Triple<double> s = face_stress(face, frame, strain, zeta[k]);
-      const Vec3 by =
-          by_stress(face, s,
-                    each * kPointWeight * frame.area * terms.by_sum *
-                        terms.slope(von_mises_square(s, face.normal)));
+      const double by_square = each * kPointWeight * frame.area * terms.by_sum *
+                               terms.slope(von_mises_square(s, face.normal));
+      const Vec3 by = by_stress(face, s, by_square);
       by_plane[k] = face.ply->plane.transpose() * by;
       const LayerStrain<double> e = layer_strain(
           strain, inverse(shifter(frame.curvature, zeta[k])), zeta[k]);
       PlyLaw& law = by_law.by[face.number];
       law.plane += by * (as_vector(e.plane) - face.free).transpose();
-      law.expansion -= solved.state.heat(face.at) * by_plane[k];
-      law.squeeze -= solved.state.stress(face.at) * by_plane[k];
+      by_state.add_free_strain(state, *face.ply, face.at, -by_plane[k], law);
+      by_state.add_stress(face.at,
+                          by_square * (2.0 * face.normal - s[0] - s[1]));
     }
+    by_state.add_to(p, gradient.by_loads);
     const auto work = [&](const FacetField& field,
                           const Triple<double>& turned) {
       const FacetStrain<double> own = facet_strain(X, p, frame, field, turned);
@@ -284,7 +288,7 @@ class NormOfShell {
     const Facet facet = facet_of(mesh_, sections_, laws_, f);
     const FacetVector u = numbers_of(mesh_, f, u_);
     const WholeMatrix K = whole_stiffness(facet);
-    return {facet, wall_state(loads_, own_[f]),
+    return {facet, wall_states(loads_, own_[f]),
             Eigen::Map<const FacetField>(u.data()),
             bubble_rotation(K, facet_forces(facet, loads_, own_[f]), u), K};
   }
@@ -297,6 +301,7 @@ class NormOfShell {
       const SolvedFacet facet = solved(static_cast<int>(k));
       parts[k].by = norm_by_shape(facet, terms, tape);
       add_by_unknowns(facet, terms, parts[k]);
+      add_field_slopes(own_[k], parts[k].by_loads, parts[k].by.data());
       // The bubble follows the nodes: condensed as forces are.
       on_bubbles[k] = parts[k].by_whole.tail<2>();
       condensed(facet.stiffness, &parts[k].by_whole);
@@ -318,6 +323,7 @@ class NormOfShell {
     norm.by_nodes = std::move(state.by_nodes);
     norm.by_thickness = std::move(state.by_thickness);
     norm.by_ply = std::move(state.by_ply);
+    norm.by_actions = std::move(state.by_actions);
   }
 
   const ShellMesh& mesh_;

@@ -18,6 +18,7 @@ struct StressNorm {
   std::vector<Vec3> by_thickness;  // at each facet's corners [the same]
   VectorX by_displacement;         // 6 per node
   PlyGradients by_ply;
+  ActionGradient by_actions;
 };
 
 /// (mean of s^p)^(1/p) over both faces of the wall, of a laminate over both of
