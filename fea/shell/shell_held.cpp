@@ -1,6 +1,8 @@
 #include "fea/shell/shell_held.h"
 
 #include <algorithm>
+#include <limits>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -68,9 +70,25 @@ std::vector<Piece> pieces_of(const ShellMesh& mesh) {
   return pieces;
 }
 
-/// Those of a piece's rigid motions, one a column, that supports leave it.
+/// By node: the directions that springs pull it along, as a projector would.
+std::map<int, Mat3> sprung(const std::vector<GroundSpring>& springs) {
+  std::map<int, Mat3> sum;
+  for (const GroundSpring& spring : springs) {
+    if (spring.at == spring.from) {
+      sum.try_emplace(spring.at, Mat3::Zero()).first->second += spring.block;
+    }
+  }
+  for (auto& [node, block] : sum) {
+    block /= std::max(block.trace(), std::numeric_limits<double>::min());
+  }
+  return sum;
+}
+
+/// Those of a piece's rigid motions, one a column, that supports and springs
+/// leave it.
 Eigen::MatrixXd motions_left(const ShellMesh& mesh, const ShellFreedom& freedom,
-                             const Piece& piece) {
+                             const Piece& piece,
+                             const std::map<int, Mat3>& springs) {
   Matrix6 held = Matrix6::Zero();
   for (const int i : piece.nodes) {
     if (freedom.free_count(i) < 6) {
@@ -78,6 +96,10 @@ Eigen::MatrixXd motions_left(const ShellMesh& mesh, const ShellFreedom& freedom,
       const Matrix6 R = rigid_motions(mesh.nodes[i] - piece.center, piece.size);
       const Matrix6 P = Matrix6::Identity() - Q * Q.transpose();
       held += R.transpose() * P * R;
+    }
+    if (const auto pull = springs.find(i); pull != springs.end()) {
+      const Matrix6 R = rigid_motions(mesh.nodes[i] - piece.center, piece.size);
+      held += R.topRows<3>().transpose() * pull->second * R.topRows<3>();
     }
   }
   const auto motions = symmetric_eigen(held);
@@ -94,7 +116,7 @@ Eigen::MatrixXd free_motions(const ShellMesh& mesh,
                              const ShellFreedom& freedom) {
   std::vector<VectorX> columns;
   for (const Piece& piece : pieces_of(mesh)) {
-    const Eigen::MatrixXd left = motions_left(mesh, freedom, piece);
+    const Eigen::MatrixXd left = motions_left(mesh, freedom, piece, {});
     for (Eigen::Index k = 0; k < left.cols(); ++k) {
       VectorX six = VectorX::Zero(6L * freedom.nodes());
       for (const int i : piece.nodes) {
@@ -114,9 +136,11 @@ Eigen::MatrixXd free_motions(const ShellMesh& mesh,
   return motions;
 }
 
-void check_held(const ShellMesh& mesh, const ShellFreedom& freedom) {
+void check_held(const ShellMesh& mesh, const ShellFreedom& freedom,
+                const std::vector<GroundSpring>& springs) {
+  const std::map<int, Mat3> pulls = sprung(springs);
   for (const Piece& piece : pieces_of(mesh)) {
-    const Eigen::MatrixXd left = motions_left(mesh, freedom, piece);
+    const Eigen::MatrixXd left = motions_left(mesh, freedom, piece, pulls);
     if (left.cols() > 0) {
       throw SolverError(fmt::format(
           "a shell of {} nodes around ({:.6g}, {:.6g}, {:.6g}) is free to {}; "

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "core/math/dense.h"
 #include "fea/shell/shell_mesh.h"
@@ -25,8 +26,10 @@ std::string motion_text(const Eigen::Matrix<double, 6, 1>& motion);
 Eigen::MatrixXd free_motions(const ShellMesh& mesh,
                              const ShellFreedom& freedom);
 
-/// Throws SolverError, naming a place and the motion, where there are any. A
-/// factor may not notice: rounding leaves pivots that are positive.
-void check_held(const ShellMesh& mesh, const ShellFreedom& freedom);
+/// Throws SolverError, naming a place and the motion, where there are any that
+/// the springs leave, too. A factor may not notice: rounding leaves pivots that
+/// are positive.
+void check_held(const ShellMesh& mesh, const ShellFreedom& freedom,
+                const std::vector<GroundSpring>& springs = {});
 
 }  // namespace meniscus::shell

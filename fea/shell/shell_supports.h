@@ -27,6 +27,15 @@ struct NodeSupport {
   Six value = Six::Zero();  // what the held ones are held at [length], [rad]
 };
 
+/// Springs between the ground and nodes of one facet: where node `from` moves
+/// by u, node `at` is pulled with -block u; the two are the same, or the
+/// transposed block acts back.
+struct GroundSpring {
+  int at = 0;
+  int from = 0;
+  Mat3 block = Mat3::Zero();  // [force/length]
+};
+
 /// A node's numbers along its own axes; the free ones are unknowns.
 class ShellFreedom {
  public:

@@ -13,14 +13,15 @@ ShellSystem::ShellSystem(const ShellMesh& mesh,
                          const std::vector<Section>& sections,
                          const std::vector<NodeSupport>& supports,
                          const FacetRule& rule,
-                         const ShellFactorOptions& options)
+                         const ShellFactorOptions& options,
+                         const std::vector<GroundSpring>& springs)
     : mesh_(mesh),
       sections_(sections),
       rule_(rule),
-      stiffness_(mesh, sections, rule),
+      stiffness_(mesh, sections, rule, springs),
       freedom_(static_cast<int>(mesh.nodes.size()), supports),
       assembly_(mesh_, freedom_) {
-  check_held(mesh_, freedom_);
+  check_held(mesh_, freedom_, springs);
   factor_.emplace(
       mesh_, freedom_, [this](int facet) { return stiffness_.of(facet); },
       options);

@@ -17,9 +17,11 @@ namespace meniscus::shell {
 
 struct ShellSolution {
   VectorX displacement;  // 6 per node: displacement, rotation [length], [rad]
-  VectorX reaction;      // 6 per node: force, moment of what holds it
-  double strain_energy = 0.0;  // u . K u / 2; of loads of temperature without
-                               // what free expansion would store
+  VectorX reaction;      // 6 per node: force, moment of what holds it, but
+                         // for springs
+  double strain_energy =
+      0.0;  // u . K u / 2, with that of springs; of loads of temperature
+            // without what free expansion would store
 };
 
 /// Stiffness with its factor for any number of load cases. Mesh and sections
@@ -27,12 +29,13 @@ struct ShellSolution {
 class ShellSystem {
  public:
   /// Throws MeshError and InvalidInput as check_shell(), laminate_law() and
-  /// ShellFreedom do; SolverError where something is free to move, or memory
-  /// runs out.
+  /// ShellFreedom, or ShellStiffness of the springs, do; SolverError where
+  /// something is free to move, or memory runs out.
   ShellSystem(const ShellMesh& mesh, const std::vector<Section>& sections,
               const std::vector<NodeSupport>& supports,
               const FacetRule& rule = facet_rule(),
-              const ShellFactorOptions& options = {});
+              const ShellFactorOptions& options = {},
+              const std::vector<GroundSpring>& springs = {});
 
   ShellSolution solve(const ShellLoads& loads) const;
 

@@ -190,9 +190,13 @@ void add_gradient(double factor, const ShellGradient& more,
 /// -x . K x, which no loads change.
 ShellGradient minus_stiffness_work(const ShellMesh& mesh,
                                    const std::vector<Section>& sections,
+                                   const AddSpringWork& springs,
                                    const VectorX& x) {
   ShellGradient gradient = residual_gradient(mesh, sections, {}, x, x);
   gradient.by_actions = {};
+  if (springs) {
+    springs(x, gradient.by_nodes);
+  }
   return gradient;
 }
 
@@ -303,7 +307,8 @@ SparseMatrix nodal_mass(const ShellMesh& mesh,
 ModeWork factor_functional(const ShellMesh& mesh,
                            const std::vector<Section>& sections,
                            const ShellLoads& loads, const VectorX& u,
-                           const modes::WeightedModes& modes) {
+                           const modes::WeightedModes& modes,
+                           const AddSpringWork& springs) {
   ModeWork result{empty_gradient(mesh), VectorX::Zero(u.size())};
   for (std::size_t k = 0; k < modes.values.size(); ++k) {
     const double weight = modes.weights[static_cast<Eigen::Index>(k)];
@@ -315,8 +320,8 @@ ModeWork factor_functional(const ShellMesh& mesh,
     const double by_stiffness = -weight / geometric.value;
     const double by_geometric = modes.values[k] * by_stiffness;
     result.value += weight * modes.values[k];
-    add_gradient(-by_stiffness, minus_stiffness_work(mesh, sections, x),
-                 result);
+    add_gradient(-by_stiffness,
+                 minus_stiffness_work(mesh, sections, springs, x), result);
     add_gradient(by_geometric, geometric, result);
     result.by_displacement += by_geometric * geometric.by_displacement;
   }
@@ -325,7 +330,8 @@ ModeWork factor_functional(const ShellMesh& mesh,
 
 ModeWork frequency_functional(const ShellMesh& mesh,
                               const std::vector<Section>& sections,
-                              const modes::WeightedModes& modes) {
+                              const modes::WeightedModes& modes,
+                              const AddSpringWork& springs) {
   constexpr double kTurn = 2.0 * std::numbers::pi;
   ModeWork result{empty_gradient(mesh), {}};
   for (std::size_t k = 0; k < modes.values.size(); ++k) {
@@ -340,8 +346,8 @@ ModeWork frequency_functional(const ShellMesh& mesh,
     const double by_stiffness =
         weight / (2.0 * kTurn * kTurn * frequency * inertia.value);
     result.value += weight * frequency;
-    add_gradient(-by_stiffness, minus_stiffness_work(mesh, sections, x),
-                 result);
+    add_gradient(-by_stiffness,
+                 minus_stiffness_work(mesh, sections, springs, x), result);
     add_gradient(-std::pow(kTurn * frequency, 2) * by_stiffness, inertia,
                  result);
   }

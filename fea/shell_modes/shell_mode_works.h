@@ -4,6 +4,7 @@
 /// per node.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "core/math/linear_solve.h"
@@ -36,17 +37,24 @@ ShellGradient inertia_work(const ShellMesh& mesh,
 SparseMatrix nodal_mass(const ShellMesh& mesh,
                         const std::vector<Section>& sections);
 
+/// Adds the derivatives by nodes of -x . S x, S the springs'.
+using AddSpringWork = std::function<void(const VectorX& x, Points& by_nodes)>;
+
 /// sum weight_k factor_k, factors of the loads at the solution `u` under them:
 /// d lambda = -x^T (dK + lambda dK_g) x / x^T K_g x. Throws as the works.
+/// `springs` as of frequency_functional().
 ModeWork factor_functional(const ShellMesh& mesh,
                            const std::vector<Section>& sections,
                            const ShellLoads& loads, const VectorX& u,
-                           const modes::WeightedModes& modes);
+                           const modes::WeightedModes& modes,
+                           const AddSpringWork& springs = {});
 
 /// sum weight_k f_k: with omega = 2 pi f, d omega^2 = x^T (dK - omega^2 dM) x /
-/// x^T M x. By displacement nothing.
+/// x^T M x. By displacement nothing. `springs`: of those that K has, too; empty
+/// where it has none.
 ModeWork frequency_functional(const ShellMesh& mesh,
                               const std::vector<Section>& sections,
-                              const modes::WeightedModes& modes);
+                              const modes::WeightedModes& modes,
+                              const AddSpringWork& springs = {});
 
 }  // namespace meniscus::shell

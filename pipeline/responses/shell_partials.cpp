@@ -216,11 +216,18 @@ ResponsePartials shell_modal(const ResponseTask& task) {
   if (task.derivatives == element::Derivatives::All) {
     const FoundModes& found = task.fields.modes->problems[sum.problem];
     const modes::WeightedModes modes{found.values, found.shapes, sum.weights};
+    const auto springs = [&](const VectorX& x, Points& by_nodes) {
+      if (found.load_case != case_data::AnalysisEntry::kFree) {
+        shells::add_spring_gradient(
+            part, static_cast<std::size_t>(found.load_case), x, x, by_nodes);
+      }
+    };
     if (found.kind == case_data::ResponseKind::BucklingFactor) {
       const shells::ShellCase& own =
           part.cases[static_cast<std::size_t>(found.load_case)];
-      shell::ModeWork work = shell::factor_functional(
-          part.mesh, part.sections, own.actions.loads, own.displacement, modes);
+      shell::ModeWork work =
+          shell::factor_functional(part.mesh, part.sections, own.actions.loads,
+                                   own.displacement, modes, springs);
       VectorX by_displacement = std::move(work.by_displacement);
       shell::ActionGradient by_actions = std::move(work.by_actions);
       result = shell_to_partials(part, std::move(work));
@@ -231,7 +238,8 @@ ResponsePartials shell_modal(const ResponseTask& task) {
                               .by_actions = std::move(by_actions)});
     } else {
       result = shell_to_partials(
-          part, shell::frequency_functional(part.mesh, part.sections, modes));
+          part, shell::frequency_functional(part.mesh, part.sections, modes,
+                                            springs));
     }
   }
   result.value = sum.value;

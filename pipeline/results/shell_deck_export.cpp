@@ -5,6 +5,9 @@
 #include <map>
 #include <utility>
 
+#include <fmt/format.h>
+
+#include "core/error.h"
 #include "fea/element/local_axes.h"
 #include "fea/shell/shell_loads.h"
 #include "pipeline/results/calculix_export.h"
@@ -64,6 +67,12 @@ std::vector<shell_deck::DeckShellSupport> supports_of(
 
 shell_deck::DeckShellStep shell_step_of(const shells::ShellPart& part,
                                         const loads::LoadCase& load_case) {
+  if (!load_case.springs.empty()) {
+    throw InvalidInput(fmt::format(
+        "load case '{}' has springs, which decks of shells do not say; hold "
+        "components, or export another format",
+        load_case.name));
+  }
   shell_deck::DeckShellStep step{.name = load_case.name};
   const std::vector<shell::NodeSupport> supports =
       shells::node_supports(part, load_case);

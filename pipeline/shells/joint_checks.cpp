@@ -122,6 +122,14 @@ class JointChecks {
                         load_case.name, support.support.surface));
       }
     }
+    for (const loads::SpringBed& bed : load_case.springs) {
+      if (is_on_shells(input_, bed.surface)) {
+        refuse(load_case.line,
+               fmt::format("load case '{}': springs on the shell's '{}'",
+                           load_case.name, bed.surface),
+               "spring a surface of the solid");
+      }
+    }
     if (!load_case.pins.empty()) {
       refuse(load_case.pins.front().line,
              fmt::format("load case '{}': a rigid support", load_case.name),

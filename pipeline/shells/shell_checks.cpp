@@ -120,11 +120,10 @@ class ShellChecks {
         refuse(support.line, "a support at a point that follows the design");
       }
     }
-    if (std::any_of(load_case.springs.begin(), load_case.springs.end(),
-                    [&](const loads::SpringBed& bed) {
-                      return is_on_shells(input_, bed.surface);
-                    })) {
-      refuse(load_case.line, "springs");
+    if (std::any_of(
+            load_case.springs.begin(), load_case.springs.end(),
+            [](const loads::SpringBed& bed) { return is_rim(bed.surface); })) {
+      refuse(load_case.line, "springs on a rim");
     }
     if (!load_case.pins.empty()) {
       refuse(load_case.pins.front().line, "a rigid support");
@@ -208,18 +207,22 @@ class ShellChecks {
     }
   }
 
-  /// Part of the energy is in what free expansion is held back by.
+  /// Part of the energy is in what free expansion is held back by, or in
+  /// springs.
   void check_energy_of_loads(const case_data::ResponseEntry& response) {
     const case_data::LoadCaseEntry& load_case =
         input_.load_cases[static_cast<std::size_t>(response.load_case)];
-    for (const case_data::LoadEntry& load : load_case.loads) {
-      if (load.kind == case_data::LoadKind::Temperature) {
-        problems_.add(
-            response.line,
-            fmt::format("responses.{} is the strain_energy of load case '{}', "
-                        "which has a temperature; of shells take compliance",
-                        response.name, load_case.name));
-      }
+    const bool is_hot = std::any_of(
+        load_case.loads.begin(), load_case.loads.end(), [](const auto& load) {
+          return load.kind == case_data::LoadKind::Temperature;
+        });
+    if (is_hot || !load_case.springs.empty()) {
+      problems_.add(
+          response.line,
+          fmt::format("responses.{} is the strain_energy of load case '{}', "
+                      "which has {}; of shells take compliance",
+                      response.name, load_case.name,
+                      is_hot ? "a temperature" : "springs"));
     }
   }
 

@@ -357,12 +357,14 @@ std::shared_ptr<const shell::ShellSystem> system_of(
     const ShellPart& part) {
   const loads::LoadCase& own = inputs.load_cases[load_case];
   for (std::size_t k = 0; k < load_case; ++k) {
-    if (inputs.load_cases[k].supports == own.supports) {
+    if (inputs.load_cases[k].supports == own.supports &&
+        inputs.load_cases[k].springs == own.springs) {
       return part.cases[k].system;
     }
   }
-  return std::make_shared<shell::ShellSystem>(part.mesh, part.sections,
-                                              node_supports(part, own));
+  return std::make_shared<shell::ShellSystem>(
+      part.mesh, part.sections, node_supports(part, own), shell::facet_rule(),
+      shell::ShellFactorOptions{}, ground_springs(part, own));
 }
 
 /// |reactions + loads| over the sum of |loads|, nodal forces all of them.
@@ -386,6 +388,9 @@ void solve_case(const loads::LoadCase& load_case, ShellPart& part,
   own.reaction = found.reaction;
   const VectorX forces =
       shell::nodal_forces(part.mesh, part.sections, own.actions.loads);
+  const VectorX all_reactions =
+      found.reaction +
+      spring_pull(ground_springs(part, load_case), found.displacement);
   // Reactions of what is free are the residual.
   const double size = std::max(forces.norm(), found.reaction.norm());
   const double left = own.system->freedom().restrict(found.reaction).norm();
@@ -393,10 +398,10 @@ void solve_case(const loads::LoadCase& load_case, ShellPart& part,
   if (solution.displacements.empty()) {
     report.dofs = own.system->freedom().unknowns();
     report.strain_energy = found.strain_energy;
-    report.reaction_imbalance = imbalance(forces, found.reaction);
+    report.reaction_imbalance = imbalance(forces, all_reactions);
   }
   solution.displacements.push_back(shell::displacements_of(found.displacement));
-  solution.reactions.push_back(shell::displacements_of(found.reaction));
+  solution.reactions.push_back(shell::displacements_of(all_reactions));
   report.solve_seconds += timer.seconds();
 }
 

@@ -10,6 +10,7 @@
 #include "fea/loads/load_checks.h"
 #include "fea/loads/load_rates.h"
 #include "fea/loads/loads.h"
+#include "fea/supports/springs.h"
 #include "fea/supports/surface_load_gradient.h"
 
 namespace meniscus::shells {
@@ -149,6 +150,10 @@ loads::LoadCase on_films(const loads::LoadCase& load_case) {
       result.remote_loads.push_back(std::move(remote));
     }
   }
+  for (loads::SpringBed bed : load_case.springs) {
+    bed.surface = film_of(bed.surface);
+    result.springs.push_back(std::move(bed));
+  }
   return result;
 }
 
@@ -251,6 +256,43 @@ ShellActions shell_actions(const ShellPart& part,
   return result;
 }
 
+std::vector<shell::GroundSpring> ground_springs(
+    const ShellPart& part, const loads::LoadCase& load_case) {
+  std::vector<shell::GroundSpring> springs;
+  if (load_case.springs.empty()) {
+    return springs;
+  }
+  const supports::SpringBlocks blocks =
+      supports::spring_blocks(part.skin, on_films(load_case), 2);
+  for (std::size_t k = 0; k < blocks.at.size(); ++k) {
+    springs.push_back({blocks.at[k][0], blocks.at[k][1], blocks.block[k]});
+  }
+  return springs;
+}
+
+VectorX spring_pull(const std::vector<shell::GroundSpring>& springs,
+                    const VectorX& u) {
+  VectorX pull = VectorX::Zero(u.size());
+  for (const shell::GroundSpring& spring : springs) {
+    const Eigen::Index at = Eigen::Index{6} * spring.at;
+    const Eigen::Index from = Eigen::Index{6} * spring.from;
+    pull.segment<3>(at) -= spring.block * u.segment<3>(from);
+    if (at != from) {
+      pull.segment<3>(from) -= spring.block.transpose() * u.segment<3>(at);
+    }
+  }
+  return pull;
+}
+
+void add_spring_gradient(const ShellPart& part, std::size_t load_case,
+                         const VectorX& v, const VectorX& u, Points& by_nodes) {
+  const loads::LoadCase& films = part.cases[load_case].actions.on_films;
+  if (!films.springs.empty()) {
+    supports::add_spring_gradient(part.skin, films, shell::displacements_of(u),
+                                  shell::displacements_of(v), by_nodes);
+  }
+}
+
 shell::ShellGradient work_gradient(const ShellPart& part, std::size_t load_case,
                                    const VectorX& v, const VectorX& u) {
   const ShellActions& actions = part.cases[load_case].actions;
@@ -261,6 +303,7 @@ shell::ShellGradient work_gradient(const ShellPart& part, std::size_t load_case,
                                         shell::displacements_of(v),
                                         gradient.by_nodes);
   }
+  add_spring_gradient(part, load_case, v, u, gradient.by_nodes);
   for (const shell::LineLoad& line : actions.lines) {
     shell::line_gradient(part.mesh, line, v, &gradient);
   }

@@ -24,7 +24,7 @@ namespace meniscus::shells {
 /// What acts in a load case, in the terms of the shell.
 struct ShellActions {
   shell::ShellLoads loads;             // all of it
-  loads::LoadCase on_films;            // of that: as forces at nodes
+  loads::LoadCase on_films;            // of that: as forces at nodes; springs
   std::vector<shell::LineLoad> lines;  // of that: on rims, the same
 };
 
@@ -87,6 +87,17 @@ std::vector<shell::FacetEdge> rim_edges(const ShellPart& part,
 /// normals point to, one on FILM/back on the other.
 ShellActions shell_actions(const ShellPart& part,
                            const loads::LoadCase& load_case);
+
+/// What springs pull films with, as blocks of the stiffness and as forces at
+/// displacements of 6 per node.
+std::vector<shell::GroundSpring> ground_springs(
+    const ShellPart& part, const loads::LoadCase& load_case);
+VectorX spring_pull(const std::vector<shell::GroundSpring>& springs,
+                    const VectorX& u);
+
+/// Adds the gradient by nodes of -v . S u, S the springs' blocks.
+void add_spring_gradient(const ShellPart& part, std::size_t load_case,
+                         const VectorX& v, const VectorX& u, Points& by_nodes);
 
 /// v . (f - K u) of a load case by nodes and thicknesses; 6 per node. Of u = 0
 /// the work of the loads on v.

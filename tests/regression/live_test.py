@@ -211,9 +211,13 @@ class Frames(Live):
 class Limits(Live):
     def test_the_time_limit_bounds_what_comes_after_it(self):
         begun = time.monotonic()
-        out, done = self.run_study("out", "--time-limit", "0.4", "--set",
-                                   "resolution.fea=5", code=3)
-        result = self.result(out)
+        # A busy machine may not come to a first design within the least.
+        for limit in ("0.4", "0.8", "1.6", "3.2"):
+            out, done = self.run_study("out_" + limit, "--time-limit", limit,
+                                       "--set", "resolution.fea=5", code=3)
+            result = self.result(out)
+            if "before a first design" not in result["message"]:
+                break
         self.assertEqual(result["status"], "stopped")
         self.assertIn("left no time for: ", " ".join(result["warnings"]))
         self.assertEqual(result["response_errors"], {})

@@ -893,7 +893,7 @@ constraints = [{ response = "stable", min = 1.5 }]
             ('supports = [{ on = "skin/rim:low", fix = "xyz" }',
              'supports = [{ on = "skin/rim:low", fix = "normal" }',
              "a support along normals"),
-            ('fix = "xyz" }', 'stiffness = [1, 1, 1] }', "springs"),
+            ('fix = "xyz" }', 'stiffness = [1, 1, 1] }', "springs on a rim"),
             ('force = [1000, 0, "ring * 10"]',
              'by = "rigid", force = [1000, 0, 0]', "a rigid or bearing load"),
             ('"skin/rim:high", rim_tension = "20 * inside"',

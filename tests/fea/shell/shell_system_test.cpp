@@ -327,6 +327,47 @@ void expect_free(const ShellMesh& mesh,
   }
 }
 
+/// Springs at a corner and between it and a node of its facet alone hold it.
+TEST(ShellSystem, SpringsToTheGroundHoldIt) {
+  const MappedShell shell = shell_shapes::mapped_shell(
+      [](double s, double t) -> Vec3 {
+        return {2.0 * s, t, 0.3 * s * t};
+      },
+      0.1, {.m = 3, .n = 2});
+  const std::vector<Section> sections = {shell_shapes::isotropic(50.0, 0.3)};
+  std::vector<GroundSpring> springs;
+  for (const auto& [s, t] :
+       {std::pair(0.0, 0.0), std::pair(1.0, 0.0), std::pair(0.0, 1.0)}) {
+    const int node = shell.node(s, t);
+    springs.push_back({node, node, Vec3(1.0, 2.0, 3.0).asDiagonal()});
+  }
+  const std::array<int, 6>& facet = shell.mesh.facets.front();
+  Mat3 between;
+  between << 0.2, 0.1, 0.0, -0.05, 0.3, 0.02, 0.0, 0.04, 0.1;
+  springs.push_back({facet[1], facet[3], between});
+  const ShellSystem system(shell.mesh, sections, {}, facet_rule(), {}, springs);
+  ShellLoads loads;
+  loads.nodal = VectorX::Zero(std::ssize(shell.mesh.nodes) * 6);
+  loads.nodal[6L * shell.node(1.0, 1.0) + 2] = 0.5;
+  const VectorX u = system.solve(loads).displacement;
+  VectorX pull = -(ShellStiffness(shell.mesh, sections).times(u) - loads.nodal);
+  for (const GroundSpring& spring : springs) {
+    const Eigen::Index at = 6L * spring.at;
+    const Eigen::Index from = 6L * spring.from;
+    pull.segment<3>(at) -= spring.block * u.segment<3>(from);
+    if (at != from) {
+      pull.segment<3>(from) -= spring.block.transpose() * u.segment<3>(at);
+    }
+  }
+  EXPECT_LT(pull.norm(), 1e-11);
+  springs.resize(2);  // it turns about the line of both
+  EXPECT_THROW(ShellSystem(shell.mesh, sections, {}, facet_rule(), {}, springs),
+               SolverError);
+  springs.push_back({0, 1000, Mat3::Identity()});
+  EXPECT_THROW(ShellSystem(shell.mesh, sections, {}, facet_rule(), {}, springs),
+               InvalidInput);
+}
+
 TEST(ShellSystem, RefusesWhatIsFreeToMove) {
   const MappedShell shell = barrel();
   const std::vector<Section> sections = {isotropic(kYoung, 0.3)};
