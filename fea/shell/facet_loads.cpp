@@ -224,16 +224,23 @@ FacePressures pressures_at(const FacetLoad& own, const FacetPoint& p) {
   return result;
 }
 
-void add_field_slopes(const FacetLoad& own, const ByLoads& by_loads,
-                      double* by_places) {
+void add_field_slopes(const Facet& facet, const FacetLoad& own,
+                      const ByLoads& by_loads, double* by_places) {
   if (!own.fields) {
     return;
   }
   for (int i = 0; i < kNodes; ++i) {
-    Eigen::Map<Vec3>(by_places + 3L * i) +=
-        by_loads(0, i) * own.fields->temperature.slope[i] +
-        by_loads(1, i) * own.fields->negative.slope[i] +
-        by_loads(2, i) * own.fields->positive.slope[i];
+    const Vec3 by = by_loads(0, i) * own.fields->temperature.slope[i] +
+                    by_loads(1, i) * own.fields->negative.slope[i] +
+                    by_loads(2, i) * own.fields->positive.slope[i];
+    if (!by.allFinite()) {
+      const Vec3& x = facet.nodes[i];
+      throw InvalidInput(fmt::format(
+          "a field of a load has no finite gradient at ({:.4g}, {:.4g}, "
+          "{:.4g}), which derivatives ask for; take one that is smooth there",
+          x.x(), x.y(), x.z()));
+    }
+    Eigen::Map<Vec3>(by_places + 3L * i) += by;
   }
 }
 

@@ -52,9 +52,10 @@ struct FacePressures {
 FacePressures pressures_at(const FacetLoad& own, const FacetPoint& p);
 
 /// Derivatives by fields as derivatives by the nodes' places, 3 per node; with
-/// those that `by_places` has.
-void add_field_slopes(const FacetLoad& own, const ByLoads& by_loads,
-                      double* by_places);
+/// those that `by_places` has. Throws InvalidInput, naming the place, for a
+/// field that has no gradient there.
+void add_field_slopes(const Facet& facet, const FacetLoad& own,
+                      const ByLoads& by_loads, double* by_places);
 
 /// What acts on one facet but edges and nodes: consistent, the bubble's moments
 /// last.

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "core/error.h"
 #include "core/math/partial_cholesky.h"
+#include "core/math/spilled_matrix.h"
 #include "core/memory.h"
 #include "core/parallel_for.h"
 
@@ -17,6 +19,7 @@ namespace {
 
 /// Substructures that are condensed before their wholes are.
 constexpr int kLeavesAtOnce = 4;
+constexpr double kFrontShare = 0.25;  // ShellFactorOptions::kept_bytes
 
 int levels_for(int unknowns, const ShellFactorOptions& options) {
   int levels = 0;
@@ -49,7 +52,16 @@ struct ShellFactor::Leaf {
 struct ShellFactor::Front {
   std::vector<int> own;  // unknowns
   std::vector<int> boundary;
-  Eigen::MatrixXd L;  // rows: own, boundary; columns: own
+  Eigen::MatrixXd L;  // rows: own, boundary; columns: own; or there:
+  std::optional<SpilledMatrix> on_disk = {};
+
+  const Eigen::MatrixXd& get(Eigen::MatrixXd& read) const {
+    if (!on_disk) {
+      return L;
+    }
+    read = on_disk->read();
+    return read;
+  }
 };
 
 ShellFactor::ShellFactor(const ShellMesh& mesh, const ShellFreedom& freedom,
@@ -184,6 +196,12 @@ void ShellFactor::condense_halves(int part) {
     throw_not_definite(freedom_.unknowns());
   }
   front.L = F.leftCols(own);
+  front_bytes_ += sizeof(double) * static_cast<double>(front.L.size());
+  if (front_bytes_ > kFrontShare * kept_bytes_) {
+    front_bytes_ -= sizeof(double) * static_cast<double>(front.L.size());
+    front.on_disk.emplace(front.L);
+    front.L.resize(0, 0);
+  }
   const Eigen::Index left = next - own;
   Eigen::MatrixXd S(left, left);
   S = F.bottomRightCorner(left, left).selfadjointView<Eigen::Lower>();
@@ -226,14 +244,16 @@ Eigen::MatrixXd ShellFactor::solve(const Eigen::MatrixXd& right) const {
   for (int part = leaves - 1; part > 0; --part) {
     const Front& front = fronts_[part];
     Eigen::MatrixXd b = rows(x, front.own, front.boundary);
-    solve_leading_lower(front.L, b);
+    Eigen::MatrixXd read;
+    solve_leading_lower(front.get(read), b);
     x(front.own, Eigen::all) = b.topRows(front.own.size());
     x(front.boundary, Eigen::all) = b.bottomRows(front.boundary.size());
   }
   for (int part = 1; part < leaves; ++part) {
     const Front& front = fronts_[part];
     Eigen::MatrixXd b = rows(x, front.own, front.boundary);
-    solve_leading_upper(front.L, b);
+    Eigen::MatrixXd read;
+    solve_leading_upper(front.get(read), b);
     x(front.own, Eigen::all) = b.topRows(front.own.size());
   }
   parallel_for(leaves, [&](std::ptrdiff_t k) {

@@ -23,15 +23,17 @@ struct ShellFactorOptions {
   /// Halvings at most: more of them take less memory within, and more for the
   /// cuts.
   int most_levels = 4;
-  /// That substructures' factors may keep [byte]; below 0: half of what the
-  /// machine has left. The results do not depend on it.
+  /// That substructures' factors may keep, and a quarter of it the cuts', the
+  /// others of which go to the disk [byte]; below 0: half of what the machine
+  /// has left. The results do not depend on it.
   double kept_bytes = -1.0;
 };
 
 class ShellFactor {
  public:
   /// Keeps references, and `matrix`, of one facet, symmetric. Throws
-  /// SolverError where the sum is not positive definite, or memory runs out.
+  /// SolverError where the sum is not positive definite, or memory runs out,
+  /// IoError where the disk does.
   ShellFactor(const ShellMesh& mesh, const ShellFreedom& freedom,
               MatrixOfFacet matrix, const ShellFactorOptions& options = {});
   ~ShellFactor();
@@ -55,6 +57,7 @@ class ShellFactor {
   double kept_bytes_ = 0.0;
   std::vector<std::unique_ptr<Leaf>> kept_;
   std::vector<Front> fronts_;  // by part
+  double front_bytes_ = 0.0;   // of those that are not on the disk
   // By part, until its whole has it; of no rows where it hangs on nothing.
   std::vector<std::optional<Eigen::MatrixXd>> schur_;
 };

@@ -277,7 +277,7 @@ FacetGradient facet_gradient(const FacetResidual& residual, Tape& tape) {
   gradient.value = sum.value;
   gradient.by = taped.transpose(sum);
   gradient.by_ply = by_law.by_ply();
-  add_field_slopes(residual.own, gradient.by_loads, gradient.by.data());
+  add_field_slopes(facet, residual.own, gradient.by_loads, gradient.by.data());
   return gradient;
 }
 

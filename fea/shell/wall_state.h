@@ -25,7 +25,8 @@ struct WallState {
 /// A field on a facet, quadratic between its values at the nodes.
 struct NodeValues {
   std::array<double, kNodes> value = {};
-  /// Its gradient there, for derivatives only [value/length].
+  /// Its gradient there, for derivatives only [value/length]; not a number
+  /// where it has none.
   std::array<Vec3, kNodes> slope = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero(),
                                     Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
 

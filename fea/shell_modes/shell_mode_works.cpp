@@ -167,7 +167,7 @@ void add_by_numbers(const StressedFacet& at, WholeGradient& work) {
     }
   }
   work.by_ply = by_law.by_ply();
-  add_field_slopes(at.own, work.by_loads, work.by.data());
+  add_field_slopes(at.facet, at.own, work.by_loads, work.by.data());
 }
 
 FacetField field_of(const ShellMesh& mesh, int facet, const VectorX& nodal) {

@@ -301,7 +301,8 @@ class NormOfShell {
       const SolvedFacet facet = solved(static_cast<int>(k));
       parts[k].by = norm_by_shape(facet, terms, tape);
       add_by_unknowns(facet, terms, parts[k]);
-      add_field_slopes(own_[k], parts[k].by_loads, parts[k].by.data());
+      add_field_slopes(facet.facet, own_[k], parts[k].by_loads,
+                       parts[k].by.data());
       // The bubble follows the nodes: condensed as forces are.
       on_bubbles[k] = parts[k].by_whole.tail<2>();
       condensed(facet.stiffness, &parts[k].by_whole);

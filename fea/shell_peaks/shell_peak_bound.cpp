@@ -380,7 +380,8 @@ class PeakOfShell {
                Eigen::Map<const FacetField>(u.data()),
                bubble_rotation(K, facet_forces(facet, state.loads, own[k]), u)},
               tensors, tape);
-          add_field_slopes(own[k], parts[k].by_loads, parts[k].by.data());
+          add_field_slopes(facet, own[k], parts[k].by_loads,
+                           parts[k].by.data());
           // The bubble follows the nodes: condensed as forces are.
           on_bubbles[k] = parts[k].by_whole.tail<2>();
           condensed(K, &parts[k].by_whole);

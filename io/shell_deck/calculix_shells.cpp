@@ -258,23 +258,7 @@ class ShellWriter {
                   const std::map<int, HeldShellNode>& held) {
     add("** load case '{}'\n*STEP\n*STATIC, SOLVER=SPOOLES\n",
         io::one_line(step.name));
-    add("*BOUNDARY, OP=NEW\n");
-    for (const auto& [node, own] : held) {
-      std::optional<Mat3> frame;
-      if (const auto at = turned_.find(node); at != turned_.end()) {
-        frame = at->second;
-      }
-      const std::array<double, 6> values = held_values(step, node, frame);
-      for (std::size_t c = 0; c < own.fixed.size(); ++c) {
-        if (own.fixed[c]) {
-          add("{}, {}, {}", node + 1, c + 1, c + 1);
-          if (values[c] != 0.0) {
-            add(", {:.12e}", values[c]);
-          }
-          add("\n");
-        }
-      }
-    }
+    write_boundary(step, held);
     if (is_heated(deck_)) {
       add("*TEMPERATURE, OP=NEW\n");
       if (step.nodal_temperatures.size() == 0) {
@@ -294,6 +278,35 @@ class ShellWriter {
     }
     add("*NODE FILE\nU, RF\n*EL FILE\nS\n"
         "*NODE PRINT, NSET=NALL, GLOBAL=YES\nU\n*END STEP\n");
+  }
+
+  /// Only where it differs from the step before: CalculiX loses what holds
+  /// rotations where a later step holds the same ones anew.
+  void write_boundary(const DeckShellStep& step,
+                      const std::map<int, HeldShellNode>& held) {
+    const std::size_t begin = buffer_.size();
+    add("*BOUNDARY, OP=NEW\n");
+    for (const auto& [node, own] : held) {
+      std::optional<Mat3> frame;
+      if (const auto at = turned_.find(node); at != turned_.end()) {
+        frame = at->second;
+      }
+      const std::array<double, 6> values = held_values(step, node, frame);
+      for (std::size_t c = 0; c < own.fixed.size(); ++c) {
+        if (own.fixed[c]) {
+          add("{}, {}, {}", node + 1, c + 1, c + 1);
+          if (values[c] != 0.0) {
+            add(", {:.12e}", values[c]);
+          }
+          add("\n");
+        }
+      }
+    }
+    const std::string own(buffer_.data() + begin, buffer_.size() - begin);
+    if (own == boundary_) {
+      buffer_.resize(begin);
+    }
+    boundary_ = own;
   }
 
   /// About the middle of the wall.
@@ -350,6 +363,7 @@ class ShellWriter {
   std::vector<std::string> set_names_;
   NodeWalls walls_;
   std::vector<std::map<int, HeldShellNode>> held_;  // per step
+  std::string boundary_;                            // the last step's
   std::map<int, Mat3> turned_;               // nodes with a frame of their own
   std::set<int> has_moment_;                 // nodes that moments act on
   std::vector<std::optional<double>> even_;  // per section: its one thickness

@@ -37,6 +37,19 @@ loads::SurfaceTraction traction_of(const LoadEntry& load,
   return result;
 }
 
+/// Of a pressure or a temperature: a rate has none where nothing moves it, and
+/// no slope.
+template <class Load>
+void set_field(const PlaceQuantity& place, const CaseValues& values,
+               Load& load) {
+  if (!values.are_rates()) {
+    load.field = values.field(place);
+    load.slope = values.slope(place);
+  } else if (values.moves(place.quantity)) {
+    load.field = values.field(place);
+  }
+}
+
 /// A rigid load and a rigid support on the same surfaces are of one pin.
 void add_pin(const loads::Surfaces& surfaces, loads::LoadCase& result) {
   if (std::none_of(result.pins.begin(), result.pins.end(),
@@ -145,8 +158,7 @@ void add_load(const LoadEntry& load, const CaseValues& values,
     case LoadKind::Pressure: {
       loads::SurfacePressure pressure;
       if (load.place.of_place) {
-        pressure.field = values.field(load.place);
-        pressure.slope = values.slope(load.place);
+        set_field(load.place, values, pressure);
       } else {
         pressure.pressure = values.at(load.place.quantity);
       }
@@ -182,8 +194,7 @@ void add_load(const LoadEntry& load, const CaseValues& values,
     case LoadKind::Temperature: {
       loads::Temperature temperature{.reference = values.at(load.number)};
       if (load.place.of_place) {
-        temperature.field = values.field(load.place);
-        temperature.slope = values.slope(load.place);
+        set_field(load.place, values, temperature);
       } else {
         temperature.value = values.at(load.place.quantity);
       }

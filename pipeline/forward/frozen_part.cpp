@@ -327,7 +327,8 @@ void freeze_shells(const case_data::EvaluatedCase& inputs, FrozenPart& part) {
   const QuadraticSurface surface =
       part.shells->surface(part.film->reference().points);
   part.start.tet = figures_of(surface);
-  require_shell_work(surface.base.facets.size(), inputs.fea_edge);
+  require_shell_work(surface.base.facets.size(), inputs.fea_edge,
+                     case_data::has_solids(part.input));
   meter.add_to(part.start.seconds.mesh, part.start.operations.mesh);
 }
 

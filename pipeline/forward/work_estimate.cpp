@@ -82,10 +82,12 @@ void require_work(const WorkEstimate& work, double edge) {
       1.05 * edge * std::cbrt(work.elements / most)));
 }
 
-void require_shell_work(std::size_t facets, double edge) {
+void require_shell_work(std::size_t facets, double edge, bool beside_solids) {
   const auto count = static_cast<double>(facets);
+  const double whole = kBytesPerFacet * count;
   const double bytes =
-      std::min(kBytesPerFacet * count, kBytesPerCutFacet * count + kBytesUncut);
+      beside_solids ? whole
+                    : std::min(whole, kBytesPerCutFacet * count + kBytesUncut);
   const double free = available_memory();
   if (bytes <= kSmall || bytes <= free) {
     return;

@@ -28,8 +28,10 @@ std::string text_of(const WorkEstimate& work);
 /// Throws InvalidInput where memory does not hold it, or numbers of nodes do
 /// not: names what `edge` is and what would fit.
 void require_work(const WorkEstimate& work, double edge);
-/// The same of a shell: 46 kB for each facet.
-void require_shell_work(std::size_t facets, double edge);
+/// The same of a shell: 46 kB for each facet, or 15 kB where it is cut into
+/// substructures, which those beside solids are not.
+void require_shell_work(std::size_t facets, double edge,
+                        bool beside_solids = false);
 /// Of the case's initial design.
 void require_work(const case_data::Case& input);
 

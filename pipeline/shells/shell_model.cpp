@@ -416,10 +416,12 @@ equations::ElasticSolution solve_load_cases(
   part.cases.resize(inputs.load_cases.size());
   std::size_t k = 0;
   const auto failed = [&](const std::exception& error) {
+    const std::string own =
+        fmt::format("load case '{}'", inputs.load_cases[k].name);
+    const std::string said = error.what();
     solution.failure =
         Failure{FailureKind::SolverFailed,
-                fmt::format("load case '{}': {}", inputs.load_cases[k].name,
-                            error.what())};
+                said.starts_with(own) ? said : own + ": " + said};
   };
   try {
     for (; k < part.cases.size(); ++k) {

@@ -1,6 +1,7 @@
 #include "pipeline/shells/shell_part.h"
 
 #include <algorithm>
+#include <limits>
 #include <set>
 
 #include <fmt/format.h>
@@ -25,17 +26,28 @@ loads::Surfaces films_of(const loads::Surfaces& surfaces) {
   return films;
 }
 
+/// A field's gradient there, for derivatives; not a number where it has none.
+Vec3 slope_at(const loads::VectorOfPlace& slope, const Vec3& x,
+              const loads::LoadCase& load_case, const std::string& what) {
+  try {
+    return loads::field_value(slope, x, load_case, what);
+  } catch (const InvalidInput&) {
+    return Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+  }
+}
+
 /// Of a load's field at the nodes of one facet, `factor` times.
 shell::NodeValues values_at(const ShellPart& part, int facet,
                             const loads::SurfacePressure& load, double factor,
                             const loads::LoadCase& load_case) {
   shell::NodeValues values;
+  const std::string what = fmt::format("the pressure on '{}'", load.surface);
   for (std::size_t i = 0; i < values.value.size(); ++i) {
     const Vec3& x = part.mesh.nodes[part.mesh.facets[facet][i]];
     values.value[i] =
-        factor * loads::field_value(load.field, x, load_case, "a pressure");
+        factor * loads::field_value(load.field, x, load_case, what);
     if (load.slope) {
-      values.slope[i] = factor * load.slope(x);
+      values.slope[i] = factor * slope_at(load.slope, x, load_case, what);
     }
   }
   return values;
@@ -75,10 +87,11 @@ void set_temperature(const ShellPart& part, const loads::LoadCase& load_case,
   for (std::size_t i = 0; i < part.mesh.nodes.size(); ++i) {
     const Vec3& x = part.mesh.nodes[i];
     nodal.value[static_cast<Eigen::Index>(i)] =
-        loads::field_value(heat.field, x, load_case, "a temperature") -
+        loads::field_value(heat.field, x, load_case, "the temperature") -
         heat.reference;
     if (heat.slope) {
-      nodal.slope.push_back(heat.slope(x));
+      nodal.slope.push_back(
+          slope_at(heat.slope, x, load_case, "the temperature"));
     }
   }
 }

@@ -107,6 +107,23 @@ class FieldsTest(ProgramTest):
         self.assertLess(abs(found["dip"] / mean - 1), 1e-8)
         self.assertLess(found["peak"], 1e-6 * 1000 * 2e-5 * 70)
 
+    # A rim is where nodes are: a field may have a value there and no slope.
+    def test_a_field_without_a_slope_is_loaded_and_not_differentiated(self):
+        text = shells_test.TUBE.replace('pressure = "inside"',
+                                        'pressure = "inside * sqrt(50 - z)"')
+        self.assertGreater(self.run_case(text)["swell"], 0)
+        done = self.call("check-gradient", self.case(text))
+        self.assertEqual(done.returncode, 3)
+        self.assertRegex(
+            done.stdout + done.stderr,
+            r"no finite gradient at \(.*50\), which derivatives ask for")
+        text = text.replace("sqrt(50 - z)", "log(-z)")
+        done = self.expect(self.call("run", self.case(text), "--out",
+                                     self.folder / "log"), 3)
+        said = done.stdout + done.stderr
+        self.assertRegex(said, "load case 'inner': the pressure on 'skin.*' at ")
+        self.assertNotIn("load case 'inner': load case", said)
+
     def test_has_exact_gradients(self):
         self.expect(self.call("check-gradient", self.case(ALL), "--set",
                               "resolution.fea=14"), 0)

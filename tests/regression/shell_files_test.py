@@ -177,6 +177,18 @@ class ShellFiles(ProgramTest):
             ours = nodal_field(file["msh"].read_text(), "displacement, tip ")
             self.assertLess(root_mean(ours, theirs), 2e-3)
 
+    # A step that holds the same again is not to lose it.
+    def test_calculix_holds_two_steps_alike(self):
+        strip = shells_test.STRIP
+        case = strip[strip.index("[load_cases.tip]"):
+                     strip.index("[responses.dip]")]
+        text = strip.replace(case, case + case.replace("tip", "again").replace(
+            "0.1", "0.3"))
+        deck = self.run_case(text, "7", "inp")["inp"].read_text()
+        first, second = self.by_calculix(deck, "twice", len(to_middle(deck)))
+        self.assertLess(root_mean([[3 * x for x in u] for u in first], second),
+                        1e-4)
+
     # CalculiX presses the face that normals point away from, and holds the
     # middle of the wall: drawn so that both mean the same.
     def test_calculix_finds_those_of_films_drawn_at_random(self):

@@ -44,7 +44,7 @@ TEST(WorkEstimate, RefusesShellsThatMemoryDoesNotHold) {
   forward::require_shell_work(1000, 5.0);
   try {
     forward::require_shell_work(2'000'000'000, 0.01);
-    FAIL() << "92 TB were not refused";
+    FAIL() << "30 TB were not refused";
   } catch (const InvalidInput& error) {
     EXPECT_THAT(error.what(),
                 testing::AllOf(testing::HasSubstr("2,000,000,000 facets"),
