@@ -647,7 +647,8 @@ kind = "compliance"
         for side in ("both", "outside"):
             text = TUBE.replace('material = "steel"\n',
                                 f'material = "steel"\nside = "{side}"\n', 1)
-            self.expect(self.call("check-gradient", self.case(text)), 0)
+            self.expect(self.call("check-gradient", self.case(text), "--set",
+                                  "resolution.fea=12"), 0)
 
     def test_has_exact_gradients_where_it_is_moved_and_heated(self):
         self.expect(self.call("check-gradient", self.case(MOVED),
@@ -662,7 +663,7 @@ kind = "compliance"
     # Least factors and frequencies, and a third that is followed by its shape.
     def test_has_exact_gradients_of_eigenvalues(self):
         self.expect(self.call("check-gradient", self.case(
-            TUBE + MODAL.format("many"))), 0)
+            TUBE + MODAL.format("many")), "--set", "resolution.fea=12"), 0)
         for seed in range(3):
             with self.subTest(seed=seed):
                 self.expect(self.call("check-gradient", self.case(
