@@ -39,7 +39,7 @@ std::FILE* unnamed_file() {
   return file;
 }
 
-/// One column after the other through `transfer`, as the system takes them.
+/// As many bytes at a time as the system takes.
 template <class Transfer>
 void transfer_all(char* data, std::size_t bytes, const char* what,
                   const Transfer& transfer) {
@@ -58,7 +58,7 @@ void transfer_all(char* data, std::size_t bytes, const char* what,
 
 }  // namespace
 
-SpilledMatrix::SpilledMatrix(const Eigen::MatrixXd& matrix)
+SpilledMatrix::SpilledMatrix(const Eigen::Ref<const Eigen::MatrixXd>& matrix)
     : file_(unnamed_file()), rows_(matrix.rows()), columns_(matrix.cols()) {
   const int file = fileno(file_.get());
   // NOLINTNEXTLINE(cppcoreguidelines-pro-type-*): the bytes are not changed.

@@ -13,7 +13,8 @@ namespace meniscus {
 class SpilledMatrix {
  public:
   /// Throws IoError, naming the folder, where it does not hold the file.
-  explicit SpilledMatrix(const Eigen::MatrixXd& matrix);
+  /// Leading columns of another matrix are not copied first.
+  explicit SpilledMatrix(const Eigen::Ref<const Eigen::MatrixXd>& matrix);
 
   /// The same bits. From any number of threads. Throws IoError.
   Eigen::MatrixXd read() const;

@@ -195,12 +195,12 @@ void ShellFactor::condense_halves(int part) {
   if (!eliminate_leading(F, own)) {
     throw_not_definite(freedom_.unknowns());
   }
-  front.L = F.leftCols(own);
-  front_bytes_ += sizeof(double) * static_cast<double>(front.L.size());
-  if (front_bytes_ > kFrontShare * kept_bytes_) {
-    front_bytes_ -= sizeof(double) * static_cast<double>(front.L.size());
-    front.on_disk.emplace(front.L);
-    front.L.resize(0, 0);
+  const double bytes = sizeof(double) * static_cast<double>(next) * own;
+  if (front_bytes_ + bytes > kFrontShare * kept_bytes_) {
+    front.on_disk.emplace(F.leftCols(own));
+  } else {
+    front.L = F.leftCols(own);
+    front_bytes_ += bytes;
   }
   const Eigen::Index left = next - own;
   Eigen::MatrixXd S(left, left);

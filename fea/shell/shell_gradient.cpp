@@ -246,10 +246,7 @@ void add_by_law(const FacetResidual& residual, const FacetPoint& p,
     const double zeta = (place + facet.offset) * t;
     return area * determinant(shifter(frame.curvature, zeta)) * n.dot(moved);
   };
-  const Vec3 pushed(0.0, push(-0.5), push(0.5));
-  for (int i = 0; i < kNodes; ++i) {
-    loads.by_loads.col(i) += p.shape[i] * pushed;
-  }
+  add_by_loads(p, {0.0, push(-0.5), push(0.5)}, loads.by_loads);
 }
 
 FacetGradient facet_gradient(const FacetResidual& residual, Tape& tape) {

@@ -40,6 +40,12 @@ WallState WallStates::at(const FacetPoint& p) const {
   return state;
 }
 
+void add_by_loads(const FacetPoint& p, const Vec3& by, ByLoads& sum) {
+  for (int i = 0; i < kNodes; ++i) {
+    sum.col(i) += p.shape[i] * by;
+  }
+}
+
 void ByMass::add(const Vec3& factor, const Vec3& x) {
   gravity += factor;
   at_origin += factor;
@@ -59,6 +65,15 @@ void ActionGradient::add(double factor, const ActionGradient& more) {
   mass.add(factor, more.mass);
 }
 
+void ActionGradient::multiply(double factor) {
+  for (ByLoads& facet : facets) {
+    facet *= factor;
+  }
+  mass.gravity *= factor;
+  mass.at_origin *= factor;
+  mass.slope *= factor;
+}
+
 void StateGradient::add_free_strain(const WallState& state, const PlyLaw& ply,
                                     double at, const Vec3& held,
                                     PlyLaw& by_ply) {
@@ -74,10 +89,7 @@ void StateGradient::add_stress(double at, double factor) {
 }
 
 void StateGradient::add_to(const FacetPoint& p, ByLoads& sum) const {
-  const Vec3 by_load(by[0], -by[1], by[2]);
-  for (int i = 0; i < kNodes; ++i) {
-    sum.col(i) += p.shape[i] * by_load;
-  }
+  add_by_loads(p, {by[0], -by[1], by[2]}, sum);
 }
 
 }  // namespace meniscus::shell

@@ -52,6 +52,9 @@ struct WallStates {
 /// the negative face and on the positive one, each along the facet's normal.
 using ByLoads = Eigen::Matrix<double, 3, kNodes>;
 
+/// Adds, at one place, what a value is by all three.
+void add_by_loads(const FacetPoint& p, const Vec3& by, ByLoads& sum);
+
 /// By force per mass: gravity, and MassForce's two.
 struct ByMass {
   Vec3 gravity = Vec3::Zero();
@@ -69,6 +72,7 @@ struct ActionGradient {
   ByMass mass;
 
   void add(double factor, const ActionGradient& more);
+  void multiply(double factor);
 };
 
 /// A value's derivatives by the state at one place: the temperature, and the

@@ -131,10 +131,7 @@ void add_by_law(const StressedFacet& at, const FacetPoint& p,
     const double zeta = (place + at.facet.offset) * thickness;
     return lever * zeta * determinant(shifter(frame.curvature, zeta));
   };
-  const Vec3 pushed(0.0, push(-0.5), push(0.5));
-  for (int i = 0; i < kNodes; ++i) {
-    loads.by_loads.col(i) += p.shape[i] * pushed;
-  }
+  add_by_loads(p, {0.0, push(-0.5), push(0.5)}, loads.by_loads);
 }
 
 /// By the nodes' numbers and the bubble, which resultants are linear in, and by

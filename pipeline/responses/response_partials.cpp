@@ -504,8 +504,7 @@ void multiply(ResponsePartials& partials, double factor) {
     of_case.self_adjoint *= factor;
     of_case.by_forces *= factor;
     of_case.by_temperature *= factor;
-    of_case.by_actions.add(factor - 1.0,
-                           shell::ActionGradient(of_case.by_actions));
+    of_case.by_actions.multiply(factor);
   }
   partials.by_direction *= factor;
   partials.by_point *= factor;

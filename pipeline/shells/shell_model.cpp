@@ -351,6 +351,16 @@ double held_rate(const ShellPart& part, const loads::LoadCase& load_case,
 
 namespace {
 
+std::vector<shell::GroundSpring> ground_springs(
+    const supports::SpringBlocks& blocks) {
+  std::vector<shell::GroundSpring> springs;
+  springs.reserve(blocks.at.size());
+  for (std::size_t k = 0; k < blocks.at.size(); ++k) {
+    springs.push_back({blocks.at[k][0], blocks.at[k][1], blocks.block[k]});
+  }
+  return springs;
+}
+
 /// That of an earlier load case that is held alike, or a new one.
 std::shared_ptr<const shell::ShellSystem> system_of(
     const case_data::EvaluatedCase& inputs, std::size_t load_case,
@@ -364,14 +374,14 @@ std::shared_ptr<const shell::ShellSystem> system_of(
   }
   return std::make_shared<shell::ShellSystem>(
       part.mesh, part.sections, node_supports(part, own), shell::facet_rule(),
-      shell::ShellFactorOptions{}, ground_springs(part, own));
+      shell::ShellFactorOptions{}, ground_springs(spring_blocks(part, own)));
 }
 
 /// |reactions + loads| over the sum of |loads|, nodal forces all of them.
 double imbalance(const VectorX& forces, const VectorX& reactions) {
   Vec3 left = Vec3::Zero();
   double all = 0.0;
-  for (Eigen::Index i = 0; i < forces.size(); i += 6) {
+  for (Eigen::Index i = 0; i < forces.size(); i += 3) {
     left += forces.segment<3>(i) + reactions.segment<3>(i);
     all += forces.segment<3>(i).norm();
   }
@@ -388,9 +398,10 @@ void solve_case(const loads::LoadCase& load_case, ShellPart& part,
   own.reaction = found.reaction;
   const VectorX forces =
       shell::nodal_forces(part.mesh, part.sections, own.actions.loads);
-  const VectorX all_reactions =
-      found.reaction +
-      spring_pull(ground_springs(part, load_case), found.displacement);
+  const VectorX u = shell::displacements_of(found.displacement);
+  const VectorX reactions =
+      shell::displacements_of(found.reaction) -
+      supports::spring_forces(spring_blocks(part, load_case), u);
   // Reactions of what is free are the residual.
   const double size = std::max(forces.norm(), found.reaction.norm());
   const double left = own.system->freedom().restrict(found.reaction).norm();
@@ -398,10 +409,11 @@ void solve_case(const loads::LoadCase& load_case, ShellPart& part,
   if (solution.displacements.empty()) {
     report.dofs = own.system->freedom().unknowns();
     report.strain_energy = found.strain_energy;
-    report.reaction_imbalance = imbalance(forces, all_reactions);
+    report.reaction_imbalance =
+        imbalance(shell::displacements_of(forces), reactions);
   }
-  solution.displacements.push_back(shell::displacements_of(found.displacement));
-  solution.reactions.push_back(shell::displacements_of(all_reactions));
+  solution.displacements.push_back(u);
+  solution.reactions.push_back(reactions);
   report.solve_seconds += timer.seconds();
 }
 

@@ -11,7 +11,6 @@
 #include "fea/loads/load_checks.h"
 #include "fea/loads/load_rates.h"
 #include "fea/loads/loads.h"
-#include "fea/supports/springs.h"
 #include "fea/supports/surface_load_gradient.h"
 
 namespace meniscus::shells {
@@ -269,32 +268,9 @@ ShellActions shell_actions(const ShellPart& part,
   return result;
 }
 
-std::vector<shell::GroundSpring> ground_springs(
-    const ShellPart& part, const loads::LoadCase& load_case) {
-  std::vector<shell::GroundSpring> springs;
-  if (load_case.springs.empty()) {
-    return springs;
-  }
-  const supports::SpringBlocks blocks =
-      supports::spring_blocks(part.skin, on_films(load_case), 2);
-  for (std::size_t k = 0; k < blocks.at.size(); ++k) {
-    springs.push_back({blocks.at[k][0], blocks.at[k][1], blocks.block[k]});
-  }
-  return springs;
-}
-
-VectorX spring_pull(const std::vector<shell::GroundSpring>& springs,
-                    const VectorX& u) {
-  VectorX pull = VectorX::Zero(u.size());
-  for (const shell::GroundSpring& spring : springs) {
-    const Eigen::Index at = Eigen::Index{6} * spring.at;
-    const Eigen::Index from = Eigen::Index{6} * spring.from;
-    pull.segment<3>(at) -= spring.block * u.segment<3>(from);
-    if (at != from) {
-      pull.segment<3>(from) -= spring.block.transpose() * u.segment<3>(at);
-    }
-  }
-  return pull;
+supports::SpringBlocks spring_blocks(const ShellPart& part,
+                                     const loads::LoadCase& load_case) {
+  return supports::spring_blocks(part.skin, on_films(load_case), 2);
 }
 
 void add_spring_gradient(const ShellPart& part, std::size_t load_case,

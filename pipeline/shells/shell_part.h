@@ -18,6 +18,7 @@
 #include "fea/shell/shell_system.h"
 #include "fea/shell_actions/line_load.h"
 #include "fea/stress/patch_recovery.h"
+#include "fea/supports/springs.h"
 
 namespace meniscus::shells {
 
@@ -88,12 +89,9 @@ std::vector<shell::FacetEdge> rim_edges(const ShellPart& part,
 ShellActions shell_actions(const ShellPart& part,
                            const loads::LoadCase& load_case);
 
-/// What springs pull films with, as blocks of the stiffness and as forces at
-/// displacements of 6 per node.
-std::vector<shell::GroundSpring> ground_springs(
-    const ShellPart& part, const loads::LoadCase& load_case);
-VectorX spring_pull(const std::vector<shell::GroundSpring>& springs,
-                    const VectorX& u);
+/// What the springs under films pull with, by nodes' displacements.
+supports::SpringBlocks spring_blocks(const ShellPart& part,
+                                     const loads::LoadCase& load_case);
 
 /// Adds the gradient by nodes of -v . S u, S the springs' blocks.
 void add_spring_gradient(const ShellPart& part, std::size_t load_case,
