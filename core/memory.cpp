@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <limits>
+#include <string>
 #ifdef __GLIBC__
 #include <malloc.h>
 #endif
@@ -24,9 +26,22 @@ namespace {
 constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
 /// The first number in a file; unlimited when there is none ("max").
-double number_in(const std::string& path) {
+double number_in(const std::filesystem::path& path) {
   double value = 0.0;
   return std::ifstream(path) >> value ? value : kUnlimited;
+}
+
+/// Of a file of names and numbers; 0 where it is not there.
+double number_of(const std::filesystem::path& path, const std::string& name) {
+  std::ifstream file(path);
+  std::string word;
+  double value = 0.0;
+  while (file >> word >> value) {
+    if (word == name) {
+      return value;
+    }
+  }
+  return 0.0;
 }
 
 double machine_has() {
@@ -42,15 +57,30 @@ double machine_has() {
   return kUnlimited;
 }
 
-double group_has() {
-  const std::string folder = "/sys/fs/cgroup/";
-  const double now = number_in(folder + "memory.current");
-  const double before = number_in(folder + "memory/memory.usage_in_bytes");
-  return std::min(
-      now < kUnlimited ? number_in(folder + "memory.max") - now : kUnlimited,
-      before < kUnlimited
-          ? number_in(folder + "memory/memory.limit_in_bytes") - before
-          : kUnlimited);
+/// Of a control group's files (cgroups(7)), in one of its two versions.
+struct GroupFiles {
+  const char* limit;
+  const char* used;
+  const char* stat_prefix;
+};
+
+constexpr GroupFiles kFirst = {"memory.limit_in_bytes", "memory.usage_in_bytes",
+                               "total_"};
+constexpr GroupFiles kSecond = {"memory.max", "memory.current", ""};
+
+/// What the group in `folder` has left, pages of files that it can drop
+/// included.
+double folder_has(const std::filesystem::path& folder,
+                  const GroupFiles& files) {
+  const double limit = number_in(folder / files.limit);
+  const double used = number_in(folder / files.used);
+  if (limit == kUnlimited || used == kUnlimited) {
+    return kUnlimited;
+  }
+  const std::string prefix = files.stat_prefix;
+  return limit - used +
+         number_of(folder / "memory.stat", prefix + "inactive_file") +
+         number_of(folder / "memory.stat", prefix + "active_file");
 }
 
 double process_has() {
@@ -76,11 +106,46 @@ double heap_has() {
 
 }  // namespace
 
+double group_memory(const std::filesystem::path& list,
+                    const std::filesystem::path& mount) {
+  std::ifstream groups(list);  // NUMBER:CONTROLLERS:PATH
+  double has = kUnlimited;
+  for (std::string line; std::getline(groups, line);) {
+    const auto first = line.find(':');
+    const auto second = line.find(':', first + 1);
+    if (second == std::string::npos) {
+      continue;
+    }
+    const std::string controllers =
+        ',' + line.substr(first + 1, second - first - 1) + ',';
+    const bool second_version = controllers == ",,";
+    if (!second_version && controllers.find(",memory,") == std::string::npos) {
+      continue;
+    }
+    const std::filesystem::path root =
+        second_version ? mount : mount / "memory";
+    std::filesystem::path group =
+        std::filesystem::path(line.substr(second + 1)).lexically_normal();
+    while (true) {
+      has = std::min(has, folder_has(root / group.relative_path(),
+                                     second_version ? kSecond : kFirst));
+      if (!group.has_relative_path()) {
+        break;
+      }
+      group = group.parent_path();
+    }
+  }
+  return has;
+}
+
 void keep_freed_memory() {
 #ifdef __GLIBC__
   constexpr int kTopPad = 64 << 20;   // [byte] asked for at a time
   constexpr int kMostFree = 1 << 30;  // [byte] kept at the top of the heap
-  mallopt(M_MMAP_MAX, 0);             // large arrays too, from the heap
+  // Larger arrays have pages of their own, given back at once: among them the
+  // heap would keep holes of gigabytes. glibc takes no more than this.
+  constexpr int kOwnPages = 32 << 20;  // [byte]
+  mallopt(M_MMAP_THRESHOLD, kOwnPages);
   mallopt(M_TOP_PAD, kTopPad);
   mallopt(M_TRIM_THRESHOLD, kMostFree);
 #endif
@@ -118,8 +183,8 @@ void start_threads() {
 }
 
 double available_memory() {
-  return heap_has() +
-         std::max(0.0, std::min({machine_has(), group_has(), process_has()}));
+  return heap_has() + std::max(0.0, std::min({machine_has(), group_memory(),
+                                              process_has()}));
 }
 
 void require_memory(double bytes, const std::string& what,

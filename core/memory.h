@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <string>
 
 namespace meniscus {
@@ -23,9 +24,16 @@ void start_threads();
 bool has_address_space(std::size_t bytes);
 
 /// Bytes that this process can still get: what the machine and the process's
-/// control group have left, at most its own limit of address space. Infinite
+/// control groups have left, at most its own limit of address space. Infinite
 /// where the system does not tell.
 double available_memory();
+
+/// What the control groups of a process have left (cgroups(7), both versions):
+/// its own and those around it, with the pages of files that they can drop.
+/// `list`: their names; `mount`: where their files are. In a container a name
+/// may be the host's: what cannot be read is skipped. Infinite without a limit.
+double group_memory(const std::filesystem::path& list = "/proc/self/cgroup",
+                    const std::filesystem::path& mount = "/sys/fs/cgroup");
 
 /// Throws SolverError when `bytes` are more than available_memory(): "`what`
 /// needs about 5.2 GB of memory, 3.1 GB are free; `advice`". Up to 30 MB are

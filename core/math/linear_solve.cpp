@@ -403,13 +403,12 @@ Eigen::MatrixXd SymmetricFactor::schur_complement(int count) const {
                 L.data(), count, 0.0, product.data(), count);
   }
   count_operations(static_cast<double>(count) * count * count);
-  Eigen::MatrixXd schur(count, count);
-  for (int c = 0; c < count; ++c) {
+  for (int c = 0; c < count; ++c) {  // two arrays are enough
     for (int r = c; r < count; ++r) {
-      schur(last[r], last[c]) = schur(last[c], last[r]) = product(r, c);
+      L(last[r], last[c]) = L(last[c], last[r]) = product(r, c);
     }
   }
-  return schur;
+  return L;
 }
 
 int SymmetricFactor::failed_column() const { return impl_->failed_column; }

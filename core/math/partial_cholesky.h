@@ -6,11 +6,13 @@
 
 namespace meniscus {
 
-/// Eliminates the first `count` unknowns of a symmetric matrix, of which the
-/// lower triangle is read: L stands in their columns afterwards, the Schur
-/// complement of the others in the lower triangle of what is left. False where
-/// a pivot is not positive. The same bits for any number of threads.
-bool eliminate_leading(Eigen::MatrixXd& A, int count);
+/// Eliminates the first unknowns of a symmetric matrix, of which the lower
+/// triangle is read. `leading`: their columns, in which L stands afterwards;
+/// `rest`: the square below and right of them, in whose lower triangle the
+/// Schur complement stands then; what is above either diagonal has no meaning.
+/// Two arrays, so that one can be dropped without a copy of the other. False
+/// where a pivot is not positive. The same bits for any number of threads.
+bool eliminate_leading(Eigen::MatrixXd& leading, Eigen::MatrixXd& rest);
 
 /// L^-1 b of the leading columns, in place: b's first rows become y, the others
 /// lose L_21 y. `L`: the columns that eliminate_leading() left.

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <string>
 #include <unistd.h>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -58,7 +59,7 @@ void transfer_all(char* data, std::size_t bytes, const char* what,
 
 }  // namespace
 
-SpilledMatrix::SpilledMatrix(const Eigen::Ref<const Eigen::MatrixXd>& matrix)
+SpilledMatrix::SpilledMatrix(const Eigen::MatrixXd& matrix)
     : file_(unnamed_file()), rows_(matrix.rows()), columns_(matrix.cols()) {
   const int file = fileno(file_.get());
   // NOLINTNEXTLINE(cppcoreguidelines-pro-type-*): the bytes are not changed.
@@ -69,16 +70,35 @@ SpilledMatrix::SpilledMatrix(const Eigen::Ref<const Eigen::MatrixXd>& matrix)
                });
 }
 
-Eigen::MatrixXd SpilledMatrix::read() const {
-  Eigen::MatrixXd matrix(rows_, columns_);
+Eigen::MatrixXd SpilledMatrix::read(Eigen::Index first,
+                                    Eigen::Index count) const {
+  Eigen::MatrixXd matrix(rows_, count);
   const int file = fileno(file_.get());
+  const std::size_t start = sizeof(double) * rows_ * first;
   // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast)
   transfer_all(reinterpret_cast<char*>(matrix.data()),
                sizeof(double) * matrix.size(), "read from",
-               [&](char* to, std::size_t count, std::size_t at) {
-                 return pread(file, to, count, static_cast<off_t>(at));
+               [&](char* to, std::size_t bytes, std::size_t at) {
+                 return pread(file, to, bytes, static_cast<off_t>(start + at));
                });
   return matrix;
+}
+
+StoredMatrix::StoredMatrix(Eigen::MatrixXd matrix, bool spill)
+    : columns_(matrix.cols()) {
+  if (spill) {
+    on_disk_.emplace(matrix);
+  } else {
+    in_memory_ = std::move(matrix);
+  }
+}
+
+const Eigen::MatrixXd& StoredMatrix::get(Eigen::MatrixXd& read) const {
+  if (!on_disk_) {
+    return in_memory_;
+  }
+  read = on_disk_->read(0, columns_);
+  return read;
 }
 
 }  // namespace meniscus

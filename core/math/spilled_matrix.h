@@ -1,8 +1,10 @@
-/// A dense matrix that waits on the disk until it is needed.
+/// Dense matrices that wait on the disk until they are needed.
 #pragma once
 
+#include <algorithm>
 #include <cstdio>
 #include <memory>
+#include <optional>
 
 #include <Eigen/Core>
 
@@ -13,11 +15,11 @@ namespace meniscus {
 class SpilledMatrix {
  public:
   /// Throws IoError, naming the folder, where it does not hold the file.
-  /// Leading columns of another matrix are not copied first.
-  explicit SpilledMatrix(const Eigen::Ref<const Eigen::MatrixXd>& matrix);
+  explicit SpilledMatrix(const Eigen::MatrixXd& matrix);
 
-  /// The same bits. From any number of threads. Throws IoError.
-  Eigen::MatrixXd read() const;
+  Eigen::Index columns() const { return columns_; }
+  /// Those columns, the same bits. From any number of threads. Throws IoError.
+  Eigen::MatrixXd read(Eigen::Index first, Eigen::Index count) const;
 
  private:
   struct Close {
@@ -25,6 +27,38 @@ class SpilledMatrix {
   };
   std::unique_ptr<std::FILE, Close> file_;
   Eigen::Index rows_, columns_;
+};
+
+/// One of many, some of which memory has room for.
+class StoredMatrix {
+ public:
+  /// `spill`: on the disk. Throws as SpilledMatrix does.
+  StoredMatrix(Eigen::MatrixXd matrix, bool spill);
+
+  /// For some columns at a time: visit(first column, columns).
+  template <class Visit>
+  void for_each_block(const Visit& visit) const {
+    constexpr Eigen::Index kColumns = 512;
+    for (Eigen::Index first = 0; first < columns_; first += kColumns) {
+      const Eigen::Index count = std::min(kColumns, columns_ - first);
+      if (on_disk_) {
+        visit(first, on_disk_->read(first, count));
+      } else {
+        visit(first, in_memory_.middleCols(first, count));
+      }
+    }
+  }
+  /// In memory.
+  double bytes() const {
+    return sizeof(double) * static_cast<double>(in_memory_.size());
+  }
+  /// `read`: place for one that is on the disk.
+  const Eigen::MatrixXd& get(Eigen::MatrixXd& read) const;
+
+ private:
+  Eigen::Index columns_;
+  Eigen::MatrixXd in_memory_;
+  std::optional<SpilledMatrix> on_disk_;
 };
 
 }  // namespace meniscus

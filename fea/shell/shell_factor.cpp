@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <optional>
+#include <mutex>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "core/error.h"
 #include "core/math/partial_cholesky.h"
-#include "core/math/spilled_matrix.h"
 #include "core/memory.h"
 #include "core/parallel_for.h"
 
@@ -19,7 +18,7 @@ namespace {
 
 /// Substructures that are condensed before their wholes are.
 constexpr int kLeavesAtOnce = 4;
-constexpr double kFrontShare = 0.25;  // ShellFactorOptions::kept_bytes
+constexpr double kDenseShare = 0.25;  // ShellFactorOptions::kept_bytes
 
 int levels_for(int unknowns, const ShellFactorOptions& options) {
   int levels = 0;
@@ -52,16 +51,7 @@ struct ShellFactor::Leaf {
 struct ShellFactor::Front {
   std::vector<int> own;  // unknowns
   std::vector<int> boundary;
-  Eigen::MatrixXd L;  // rows: own, boundary; columns: own; or there:
-  std::optional<SpilledMatrix> on_disk = {};
-
-  const Eigen::MatrixXd& get(Eigen::MatrixXd& read) const {
-    if (!on_disk) {
-      return L;
-    }
-    read = on_disk->read();
-    return read;
-  }
+  StoredMatrix L;  // rows: own, boundary; columns: own
 };
 
 ShellFactor::ShellFactor(const ShellMesh& mesh, const ShellFreedom& freedom,
@@ -159,7 +149,7 @@ void ShellFactor::condense_leaves(int first, int count) {
     if (cut_.levels > 0) {
       Eigen::MatrixXd S = own->factor.schur_complement(outside);
       S.diagonal() -= own->raised;
-      schur_[cut_.part_of(leaf)] = std::move(S);
+      schur_[cut_.part_of(leaf)].emplace(stored(std::move(S)));
     }
     constexpr double kNumber = sizeof(double);
     if (cut_.levels == 0 ||
@@ -169,43 +159,51 @@ void ShellFactor::condense_leaves(int first, int count) {
   });
 }
 
+StoredMatrix ShellFactor::stored(Eigen::MatrixXd matrix) {
+  const double bytes = sizeof(double) * static_cast<double>(matrix.size());
+  bool spill = false;
+  {
+    const std::scoped_lock lock(dense_mutex_);
+    spill = dense_bytes_ + bytes > kDenseShare * kept_bytes_;
+    dense_bytes_ += spill ? 0.0 : bytes;
+  }
+  return {std::move(matrix), spill};
+}
+
 void ShellFactor::condense_halves(int part) {
-  Front& front = fronts_[part];
-  front.own = unknowns_of(cut_.parts[part].own);
-  front.boundary = unknowns_of(cut_.parts[part].boundary);
+  const std::vector<int> own = unknowns_of(cut_.parts[part].own);
+  const std::vector<int> boundary = unknowns_of(cut_.parts[part].boundary);
   std::vector<int> place(freedom_.unknowns(), -1);
   int next = 0;
-  for (const auto& list : {front.own, front.boundary}) {
+  for (const auto& list : {own, boundary}) {
     for (const int unknown : list) {
       place[unknown] = next++;
     }
   }
-  Eigen::MatrixXd F = Eigen::MatrixXd::Zero(next, next);
+  const auto count = static_cast<int>(own.size());
+  Eigen::MatrixXd L = Eigen::MatrixXd::Zero(next, count);
+  Eigen::MatrixXd rest = Eigen::MatrixXd::Zero(next - count, next - count);
   for (const int half : {2 * part, 2 * part + 1}) {
     const std::vector<int> at = unknowns_of(cut_.parts[half].boundary);
-    const Eigen::MatrixXd& S = *schur_[half];
-    for (std::size_t c = 0; c < at.size(); ++c) {
-      for (std::size_t r = 0; r < at.size(); ++r) {
-        F(place[at[r]], place[at[c]]) += S(r, c);
+    schur_[half]->for_each_block([&](Eigen::Index first, const auto& S) {
+      for (Eigen::Index k = 0; k < S.cols(); ++k) {
+        const Eigen::Index c = first + k;
+        for (Eigen::Index r = c; r < S.rows(); ++r) {
+          const auto [column, row] = std::minmax(place[at[r]], place[at[c]]);
+          (column < count ? L(row, column)
+                          : rest(row - count, column - count)) += S(r, k);
+        }
       }
-    }
+    });
+    dense_bytes_ -= schur_[half]->bytes();
     schur_[half].reset();
   }
-  const auto own = static_cast<int>(front.own.size());
-  if (!eliminate_leading(F, own)) {
+  if (!eliminate_leading(L, rest)) {
     throw_not_definite(freedom_.unknowns());
   }
-  const double bytes = sizeof(double) * static_cast<double>(next) * own;
-  if (front_bytes_ + bytes > kFrontShare * kept_bytes_) {
-    front.on_disk.emplace(F.leftCols(own));
-  } else {
-    front.L = F.leftCols(own);
-    front_bytes_ += bytes;
-  }
-  const Eigen::Index left = next - own;
-  Eigen::MatrixXd S(left, left);
-  S = F.bottomRightCorner(left, left).selfadjointView<Eigen::Lower>();
-  schur_[part] = std::move(S);
+  fronts_[part] =
+      std::make_unique<Front>(Front{own, boundary, stored(std::move(L))});
+  schur_[part].emplace(stored(std::move(rest)));
 }
 
 Eigen::MatrixXd ShellFactor::solve(const Eigen::MatrixXd& right) const {
@@ -242,18 +240,18 @@ Eigen::MatrixXd ShellFactor::solve(const Eigen::MatrixXd& right) const {
         passed[k];
   }
   for (int part = leaves - 1; part > 0; --part) {
-    const Front& front = fronts_[part];
+    const Front& front = *fronts_[part];
     Eigen::MatrixXd b = rows(x, front.own, front.boundary);
     Eigen::MatrixXd read;
-    solve_leading_lower(front.get(read), b);
+    solve_leading_lower(front.L.get(read), b);
     x(front.own, Eigen::all) = b.topRows(front.own.size());
     x(front.boundary, Eigen::all) = b.bottomRows(front.boundary.size());
   }
   for (int part = 1; part < leaves; ++part) {
-    const Front& front = fronts_[part];
+    const Front& front = *fronts_[part];
     Eigen::MatrixXd b = rows(x, front.own, front.boundary);
     Eigen::MatrixXd read;
-    solve_leading_upper(front.get(read), b);
+    solve_leading_upper(front.L.get(read), b);
     x(front.own, Eigen::all) = b.topRows(front.own.size());
   }
   parallel_for(leaves, [&](std::ptrdiff_t k) {

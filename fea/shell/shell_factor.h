@@ -8,10 +8,12 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <vector>
 
 #include "core/math/linear_solve.h"
+#include "core/math/spilled_matrix.h"
 #include "fea/shell/shell_assembly.h"
 #include "fea/shell/substructures.h"
 
@@ -48,6 +50,7 @@ class ShellFactor {
   const Leaf& leaf_of(int leaf, std::unique_ptr<Leaf>& made) const;
   void condense_leaves(int first, int count);
   void condense_halves(int part);
+  StoredMatrix stored(Eigen::MatrixXd matrix);
   std::vector<int> unknowns_of(const std::vector<int>& nodes) const;
 
   const ShellMesh& mesh_;
@@ -56,10 +59,12 @@ class ShellFactor {
   Substructures cut_;
   double kept_bytes_ = 0.0;
   std::vector<std::unique_ptr<Leaf>> kept_;
-  std::vector<Front> fronts_;  // by part
-  double front_bytes_ = 0.0;   // of those that are not on the disk
-  // By part, until its whole has it; of no rows where it hangs on nothing.
-  std::vector<std::optional<Eigen::MatrixXd>> schur_;
+  std::vector<std::unique_ptr<Front>> fronts_;  // by part
+  // By part, until its whole has it; of no rows where it hangs on nothing. The
+  // lower triangle alone has a meaning.
+  std::vector<std::optional<StoredMatrix>> schur_;
+  std::mutex dense_mutex_;
+  double dense_bytes_ = 0.0;  // of both, without what is on the disk
 };
 
 }  // namespace meniscus::shell

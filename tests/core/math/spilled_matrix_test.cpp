@@ -18,8 +18,25 @@ TEST(SpilledMatrix, ComesBackAsItWas) {
        {std::pair(1, 1), std::pair(0, 3), std::pair(700, 311)}) {
     const Eigen::MatrixXd matrix = Eigen::MatrixXd::Random(rows, columns);
     const SpilledMatrix spilled(matrix);
-    EXPECT_EQ(spilled.read(), matrix);
-    EXPECT_EQ(spilled.read(), matrix);
+    EXPECT_EQ(spilled.read(0, columns), matrix);
+    EXPECT_EQ(spilled.read(columns / 2, columns - columns / 2),
+              matrix.rightCols(columns - columns / 2));
+  }
+}
+
+TEST(StoredMatrix, IsTheSameOnTheDisk) {
+  for (const int columns : {0, 1, 512, 1300}) {
+    const Eigen::MatrixXd matrix = Eigen::MatrixXd::Random(90, columns);
+    for (const bool spill : {false, true}) {
+      const StoredMatrix stored(matrix, spill);
+      Eigen::MatrixXd read;
+      EXPECT_EQ(stored.get(read), matrix);
+      Eigen::MatrixXd blocks(90, columns);
+      stored.for_each_block([&](Eigen::Index first, const auto& block) {
+        blocks.middleCols(first, block.cols()) = block;
+      });
+      EXPECT_EQ(blocks, matrix);
+    }
   }
 }
 
@@ -38,7 +55,7 @@ TEST(SpilledMatrix, LeavesNoFileAndSaysWhereThereIsNoFolder) {
   }
   std::filesystem::permissions(folder, std::filesystem::perms::owner_all);
   std::filesystem::remove(folder);
-  EXPECT_EQ(spilled.read().sum(), 81.0);
+  EXPECT_EQ(spilled.read(0, 9).sum(), 81.0);
   if (before == nullptr) {
     unsetenv("TMPDIR");
   } else {
