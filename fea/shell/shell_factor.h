@@ -22,9 +22,9 @@ namespace meniscus::shell {
 struct ShellFactorOptions {
   /// Unknowns of a substructure, about; below twice of it there is one.
   int unknowns = 60000;
-  /// Halvings at most: more of them take less memory within, and more for the
-  /// cuts.
-  int most_levels = 4;
+  /// Halvings at most: more of them take less memory and work within, and more
+  /// for the cuts.
+  int most_levels = 7;
   /// That substructures' factors may keep, and a quarter of it the cuts', the
   /// others of which go to the disk [byte]; below 0: half of what the machine
   /// has left. The results do not depend on it.
