@@ -27,7 +27,7 @@ RESULT = {"run": "result.json", "evolve": "film.json",
 SECONDS = 180  # of one run at its default size on two cores
 KEYS = {
     "case": {"prepare", "runs", "convergence", "wrong"},
-    "run": {"name", "command", "quick", "seconds", "exit", "pictures",
+    "run": {"name", "command", "quick", "long", "seconds", "exit", "pictures",
             "expected", "expected_quick", "calculix", "evolver"},
     "calculix": {"displacement", "stress", "peak"},
     "figure": {"value", "kind", "relative", "absolute", "why", "label",
@@ -112,6 +112,8 @@ def read(folder, unfilled=False):
               f"the command is none of {', '.join(RESULT)}")
         if "quick" in run:
             check("expected_quick" in run, at, "'expected_quick' is missing")
+        check(not run.get("long") or "quick" in run, at,
+              "'long' is for quick sizes")
         for peer in {"calculix", "evolver"} & set(run):
             check("quick" in run and command[0] == "run", at,
                   f"'{peer}' is for quick sizes of 'run'")
@@ -122,7 +124,8 @@ def read(folder, unfilled=False):
                 check_figure(figure, f"{at}: {table}: {name}")
         for picture in run.get("pictures", []):
             check_keys("picture", picture, at, ["file", "name", "caption"])
-    check(any("quick" in run for run in spec["runs"]), where,
+    check(any("quick" in run and not run.get("long")
+              for run in spec["runs"]), where,
           "no run has a quick size")
     for item in spec.get("convergence", []):
         check_keys("convergence", item, where,
@@ -386,12 +389,14 @@ class Rate:
                 if abs(order - self.item["order"]) > self.item["absolute"]]
 
 
-def run_case(program, folder, spec, out, quick=False, pictures=False):
-    """All runs of a case, in order: outcomes by name, rates."""
+def run_case(program, folder, spec, out, quick=False, pictures=False,
+             more=True):
+    """All runs of a case, in order: outcomes by name, rates. At the quick size
+    those that are long only with `more`."""
     outcomes = {}
     prepare(program, folder, spec, out)
     for run in spec["runs"]:
-        if quick and "quick" not in run:
+        if quick and ("quick" not in run or run.get("long") and not more):
             continue
         outcomes[run["name"]] = execute(program, folder, run, out, quick,
                                         pictures)

@@ -69,7 +69,8 @@ class Studies(PackageTest):
         self.assertGreater(len(run.evaluations), kept)
         np.testing.assert_array_equal(run.evaluations.designs[:kept],
                                       cut.evaluations.designs)
-        whole = meniscus.run_study(case, self.folder() / "whole")
+        whole = meniscus.run_study(case, self.folder() / "whole",
+                                   pictures=False, frames=False, report=False)
         self.assertEqual(whole.responses, run.responses)
 
     def test_ctrl_c(self):
@@ -83,7 +84,7 @@ class Studies(PackageTest):
                     1.5, signal.raise_signal, [signal.SIGINT])
                 timer.start()
                 with self.assertRaises(KeyboardInterrupt):
-                    meniscus.run_study(case, folder, jobs=jobs)
+                    meniscus.run_study(case, folder, jobs=jobs, pictures=False)
                 timer.join()
                 self.assertEqual(meniscus.read_run(folder).status,
                                  "interrupted")
@@ -101,7 +102,7 @@ class Studies(PackageTest):
     def test_a_failed_initial_design_is_a_result(self):
         case = meniscus.with_overrides(bracket(),
                                        {"bodies.part.volume": 2e5})
-        run = meniscus.run_study(case, self.folder() / "run")
+        run = meniscus.run_study(case, self.folder() / "run", pictures=False)
         self.assertEqual(run.status, "failed")
         self.assertIsNone(run.answer)
         self.assertEqual(run.responses, {})
@@ -110,7 +111,7 @@ class Studies(PackageTest):
         tree = strut_tree({"kind": "family", "each": "analyse", "members": {
             "short": {"length": 60}, "long": {"length": 80}}})
         run = meniscus.run_study(meniscus.make_case(tree),
-                                 self.folder() / "run", jobs=2)
+                                 self.folder() / "run", jobs=2, pictures=False)
         self.assertEqual(run.status, "converged")
         self.assertEqual(list(run.members), ["short", "long"])
         masses = [m.responses["mass"] for m in run.members.values()]

@@ -36,7 +36,8 @@ class Case(ProgramTest):
         spec = cases.read(folder)
         outcomes, rates = cases.run_case(program.PROGRAM, folder, spec,
                                          self.folder, quick=True,
-                                         pictures=NAME == PICTURED)
+                                         pictures=NAME == PICTURED,
+                                         more=program.MORE)
         for name, outcome in outcomes.items():
             with self.subTest(run=name):
                 self.assertEqual(outcome.problems, [])

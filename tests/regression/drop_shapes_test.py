@@ -298,8 +298,11 @@ films = ["skin"]
         drop = "drop = [{ axis = [0, 0, 1], along = 0.9, across = 0.4 }]"
         text = filled(STRUT, volume=6.5e4, more=pole, drop=drop)
         self.refuse(text, r"acts on the area of film 'skin'")
-        self.responses("body", text.replace('films = ["skin"]',
-                                            'body = "part"'))
+        (self.folder / "body.toml").write_text(
+            text.replace('films = ["skin"]', 'body = "part"'))
+        self.expect(self.call("evolve", "body.toml", "--set",
+                              "resolution.fea=16", "--out", "body"), 0,
+                    "film: stable")
 
     def test_datafiles_say_it_as_integrals_of_normals(self):
         self.responses("drop", filled(STRUT, volume=6.5e4, drop=(

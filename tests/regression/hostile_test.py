@@ -240,7 +240,8 @@ class Orphans(ProgramTest):
     def test_none_is_left(self):
         env = {**os.environ, "MENISCUS_TEST_MARK": str(self.folder)}
         begun = time.monotonic()
-        whole = self.start("run", CASE, "--out", "whole", *COARSE, env=env)
+        whole = self.start("run", CASE, "--out", "whole", *COARSE, env=env,
+                           pictures=True)
         helpers = set()
         while whole.poll() is None:
             helpers.update(line.split(b"\0")[0].split(b"/")[-1]
@@ -253,7 +254,7 @@ class Orphans(ProgramTest):
         choice = random.Random(5)
         for number in range(12 if ALL else 3):
             running = self.start("run", CASE, "--out", f"out {number}",
-                                 *COARSE, env=env)
+                                 *COARSE, env=env, pictures=True)
             time.sleep(length * choice.uniform(0.05, 1.0))
             running.kill()
             running.communicate()
@@ -356,7 +357,7 @@ class Files(ProgramTest):
             damaged.append(whole[:cut] + b"\0" * k + whole[cut:])
         for data in damaged if ALL else damaged[::2]:
             (run / "part.vtu").write_bytes(data)
-            done = self.limited("report", run)
+            done = self.limited("report", run, "--no-pictures")
             self.assertIn(done.returncode, (0, 2), done.stderr)
             self.assertRegex(done.stderr + done.stdout, r"part\.vtu")
 

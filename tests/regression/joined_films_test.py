@@ -7,7 +7,7 @@ import random
 import re
 import unittest
 
-from program import ProgramTest
+from program import ProgramTest, some
 
 HEAD = """title = "A tube with {what}"
 units = "mm-N-MPa"
@@ -163,14 +163,14 @@ class JoinedFilms(ProgramTest):
         return out, self.result(out)
 
     def test_gradients_are_exact(self):
-        for seed in range(6):
+        for seed in some(range(6), 3):
             with self.subTest(seed=seed):
                 self.expect(self.call("check-gradient", self.case(ribbed(seed))), 0,
                             "all 12 derivatives agree")
 
     def test_lines_move_with_the_design_by_millimetres(self):
         """As a model that is frozen there has it."""
-        for seed in range(6):
+        for seed in some(range(6), 3):
             with self.subTest(seed=seed):
                 path = self.case(ribbed(seed))
                 sweep = self.case(ribbed(seed) + (
@@ -191,7 +191,7 @@ class JoinedFilms(ProgramTest):
                     delta=2e-3)
 
     def test_step_is_one_valid_solid(self):
-        for seed in range(3):
+        for seed in some((2, 0, 1)):
             with self.subTest(seed=seed):
                 out, result = self.run_files(self.case(ribbed(seed)), f"step_{seed}")
                 self.assertEqual(result["film"]["index"], 0)
@@ -202,7 +202,7 @@ class JoinedFilms(ProgramTest):
                 self.assertLess(gap, 0.01)
 
     def test_walls_of_their_own_thickness_are_one_body(self):
-        for seed, side in enumerate(("both", "inside", "outside")):
+        for seed, side in some(((1, "inside"), (0, "both"), (2, "outside"))):
             with self.subTest(seed=seed):
                 text = ribbed(seed)
                 names = re.search(r'films = \["skin", (.*)\]', text)[1]
@@ -224,7 +224,7 @@ material = "steel"
 
     def test_where_a_shelf_was_drawn_has_no_say(self):
         masses = []
-        for share in (0.35, 0.5, 0.65):
+        for share in some((0.35, 0.65, 0.5), 2):
             text = re.sub(r'"0\.\d+ \* high"', f'"{share} * high"', ribbed(2))
             masses.append(self.run_files(self.case(text), f"from_{share}")[1]
                           ["responses"]["mass"])

@@ -21,6 +21,19 @@ os.environ.setdefault("OMP_WAIT_POLICY", "passive")
 os.environ.setdefault("GLIBC_TUNABLES", "glibc.malloc.hugetlb=1")
 # About a thousand elements: the physics of the case in a second or two.
 COARSE = ["--set", "resolution.fea=20", "--set", "resolution.film=10"]
+# Set by regression.more.NAME, labelled long: a test with all of its draws.
+MORE = os.environ.get("MENISCUS_MORE") == "1"
+
+
+def some(draws, quick=1):
+    """The first `quick` of them, all with MORE."""
+    draws = list(draws)
+    return draws if MORE else draws[:quick]
+
+
+def more(test):
+    """A test method of MORE alone: there is none of its name without."""
+    return test if MORE else None
 
 
 def strut(radius, length, foot):
@@ -101,6 +114,16 @@ method = "mma"
 """
 
 
+def without_pictures(arguments, pictures):
+    """Arguments of the program, with --no-pictures where pictures are not asked
+    for: those of one small part take longer than its run."""
+    words = [str(word) for word in arguments]
+    if (words[:1] not in (["run"], ["evolve"]) or pictures or
+            {"--no-pictures", "--frame-pictures", "--help"} & set(words)):
+        return words
+    return [*words, "--no-pictures"]
+
+
 _made = {}  # by name: what once() gave
 
 
@@ -132,16 +155,18 @@ class ProgramTest(unittest.TestCase):
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="meniscus test ü "))
         self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
 
-    def call(self, *arguments, env=None, timeout=120, **options):
+    def call(self, *arguments, env=None, timeout=120, pictures=False,
+             **options):
         return subprocess.run(
-            [str(PROGRAM), *map(str, arguments)], capture_output=True,
-            text=True, timeout=timeout, cwd=self.folder,
+            [str(PROGRAM), *without_pictures(arguments, pictures)],
+            capture_output=True, text=True, timeout=timeout, cwd=self.folder,
             env={**os.environ, **(env or {})}, **options)
 
-    def start(self, *arguments, **options):
+    def start(self, *arguments, pictures=False, **options):
         return subprocess.Popen(
-            [str(PROGRAM), *map(str, arguments)], stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE, text=True, cwd=self.folder, **options)
+            [str(PROGRAM), *without_pictures(arguments, pictures)],
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+            cwd=self.folder, **options)
 
     def case(self, text, name="case.toml"):
         """That text as a file."""

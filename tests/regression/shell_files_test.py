@@ -12,7 +12,7 @@ import program
 import shells_test
 from export_test import (AGREEMENT, Gmsh, difference, displacements,
                          edges_are_paired, nodal_field, run_program, volume_of)
-from program import ProgramTest
+from program import ProgramTest, some
 
 # CalculiX makes six-node shells wedges of fifteen nodes: another element, with
 # the same answer where both are fine enough.
@@ -192,7 +192,7 @@ class ShellFiles(ProgramTest):
     # CalculiX presses the face that normals point away from, and holds the
     # middle of the wall: drawn so that both mean the same.
     def test_calculix_finds_those_of_films_drawn_at_random(self):
-        for seed in range(20, 24):
+        for seed in some(range(20, 24), 2):
             with self.subTest(seed=seed):
                 text = shells_test.drawn(seed)
                 # One node held, and rims pulled there, are other things to it.

@@ -5,9 +5,10 @@ import csv
 import math
 import os
 import random
+import shutil
 import unittest
 
-from program import ROOT, ProgramTest
+from program import ROOT, ProgramTest, some
 
 # Gas keeps the film a cylinder. In the middle, seven lengths of its edge effect
 # from either ring, `swell` is half of the radial displacement times the mean of
@@ -484,10 +485,10 @@ class Shells(ProgramTest):
     def case(self, text=TUBE, name="case.toml"):
         return super().case(text, name)
 
-    def run_case(self, text, *arguments, name="out"):
+    def run_case(self, text, *arguments, name="out", pictures=False):
         out = self.folder / name
         done = self.expect(self.call("run", self.case(text), "--out", out,
-                                     *arguments), 0)
+                                     *arguments, pictures=pictures), 0)
         return self.result(out), done.stdout, out
 
     # u_r = p r (r - t/2) / (E t) where the rings are far: the pressure acts on
@@ -496,7 +497,8 @@ class Shells(ProgramTest):
         for pressure, wall in ((2, 1), (0.5, 0.4)):
             result, said, out = self.run_case(
                 TUBE, "--set", f"design.wall.initial={wall}", "--set",
-                f"design.inside.initial={pressure}", name=f"out_{wall}")
+                f"design.inside.initial={pressure}", name=f"out_{wall}",
+                pictures=wall == 1)
             share = math.sqrt(math.pi) * 10 * math.erf(5) / LENGTH
             radial = result["responses"]["swell"] / (0.5 * share)
             ideal = pressure * 50 * (50 - wall / 2) / (MODULUS * wall)
@@ -511,8 +513,10 @@ class Shells(ProgramTest):
             self.assertIn("six-node facets of shells", said)
             self.assertEqual(result["shell"]["facets"] % 2, 0)
             for name in ("film.vtp", "part.vtu", "part_surface.vtp",
-                         "part.png", "overview.png", "report.html"):
+                         "report.html"):
                 self.assertTrue((out / name).exists(), name)
+            for name in ("part.png", "overview.png"):
+                self.assertEqual((out / name).exists(), wall == 1, name)
 
     def test_bends_as_a_strip_does(self):
         for wall in (1, 0.2):
@@ -648,14 +652,14 @@ kind = "compliance"
             text = TUBE.replace('material = "steel"\n',
                                 f'material = "steel"\nside = "{side}"\n', 1)
             self.expect(self.call("check-gradient", self.case(text), "--set",
-                                  "resolution.fea=12"), 0)
+                                  "resolution.fea=16"), 0)
 
     def test_has_exact_gradients_where_it_is_moved_and_heated(self):
         self.expect(self.call("check-gradient", self.case(MOVED),
                               "--set", "resolution.fea=16"), 0)
 
     def test_has_exact_gradients_of_films_drawn_at_random(self):
-        for seed in range(4):
+        for seed in some((0, 1, 3, 2), 3):
             with self.subTest(seed=seed):
                 self.expect(self.call("check-gradient", self.case(
                     drawn(seed) + MASSES)), 0)
@@ -663,8 +667,8 @@ kind = "compliance"
     # Least factors and frequencies, and a third that is followed by its shape.
     def test_has_exact_gradients_of_eigenvalues(self):
         self.expect(self.call("check-gradient", self.case(
-            TUBE + MODAL.format("many")), "--set", "resolution.fea=12"), 0)
-        for seed in range(3):
+            TUBE + MODAL.format("many")), "--set", "resolution.fea=16"), 0)
+        for seed in some(range(3), 2):
             with self.subTest(seed=seed):
                 self.expect(self.call("check-gradient", self.case(
                     drawn(seed) + MODAL.format("one"))), 0)
@@ -672,7 +676,8 @@ kind = "compliance"
     def test_takes_its_thickness_along(self):
         text = TUBE.replace('thickness = "wall"',
                             'thickness = "wall * (1 + z^2 / 5000)"')
-        self.expect(self.call("check-gradient", self.case(text)), 0)
+        self.expect(self.call("check-gradient", self.case(text), "--set",
+                              "resolution.fea=16"), 0)
 
     # A clamped strip, and one that nothing holds: Euler and Bernoulli, turning
     # inertia and shear being nothing at t / L = 1/100.
@@ -744,7 +749,7 @@ kind = "compliance"
 
     # Walls of the same film, of tetrahedra.
     def test_vibrates_and_buckles_as_walls_do(self):
-        for name, (supports, load) in PRESSED.items():
+        for name, (supports, load) in some(PRESSED.items()):
             with self.subTest(name=name):
                 text = THICK.format(name=name, supports=supports, load=load)
                 walls = text.replace("[shells.tube]", "[walls.tube]").replace(
@@ -795,7 +800,8 @@ planes = [{ at = [0, 0, 0], normal = [0, 1, 0] }%s]
                     if planes == 2 else "")) + told
                 one, _, _ = self.run_case(whole, "--no-pictures",
                                           name=f"whole_{planes}")
-                two, _, out = self.run_case(drawn, name=f"drawn_{planes}")
+                two, _, out = self.run_case(drawn, name=f"drawn_{planes}",
+                                            pictures=planes == 2)
                 for name, value in one["responses"].items():
                     self.assertLess(
                         abs(two["responses"][name] / value - 1), 1e-3)
@@ -806,8 +812,9 @@ planes = [{ at = [0, 0, 0], normal = [0, 1, 0] }%s]
                 self.assertRegex(
                     (out / "part.vtu").read_bytes(),
                     rb'NumberOfCells="%d"' % (parts * two["shell"]["facets"]))
-                self.assertTrue((out / "part.png").exists())
-                self.expect(self.call("check-gradient", self.case(drawn)), 0)
+                self.assertEqual((out / "part.png").exists(), planes == 2)
+                self.expect(self.call("check-gradient", self.case(drawn), "--set",
+                                      "resolution.fea=14"), 0)
 
     def test_is_sized(self):
         study = """
@@ -872,13 +879,18 @@ constraints = [{ response = "stable", min = 1.5 }]
 
     # Members stand in pairs of one shape under 2 and 3.5 kN.
     def test_analyses_thirty_thin_struts(self):
+        source = ROOT / "cases" / "strut_family"
+        members = (source / "members.csv").read_text().splitlines()
+        self.assertEqual(len(members), 31)
+        members = members[:1] + some(members[1:], 10)
+        (self.folder / "members.csv").write_text("\n".join(members) + "\n")
+        shutil.copy(source / "shells.toml", self.folder)
         out = self.folder / "struts"
         self.expect(self.call(
-            "run", ROOT / "cases" / "strut_family" / "shells.toml", "--jobs",
-            "2", "--no-pictures", "--no-report", "--out", out), 0)
+            "run", "shells.toml", "--jobs", "2", "--no-report", "--out", out), 0)
         with (out / "family.csv").open() as table:
             rows = list(csv.DictReader(table))
-        self.assertEqual(len(rows), 30)
+        self.assertEqual(len(rows), len(members) - 1)
         masses = set()
         for light, heavy in zip(rows[::2], rows[1::2]):
             self.assertEqual((light["load"], heavy["load"]), ("2000", "3500"))
@@ -887,7 +899,7 @@ constraints = [{ response = "stable", min = 1.5 }]
             for name in ("deflection", "stress"):
                 ratio = float(heavy[name]) / float(light[name])
                 self.assertLess(abs(ratio / 1.75 - 1), 1e-9)
-        self.assertEqual(len(masses), 15)
+        self.assertEqual(len(masses), len(rows) // 2)
 
     def test_says_what_it_does_not_do(self):
         wrong = [

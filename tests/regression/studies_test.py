@@ -7,7 +7,7 @@ import re
 import unittest
 
 import program
-from program import COARSE, SIZED_STRUT, ProgramTest
+from program import COARSE, SIZED_STRUT, ProgramTest, some
 
 SIZED = """
 [responses.mass]
@@ -139,8 +139,8 @@ class Minimize(Sized):
         self.assertAlmostEqual(result["responses"]["difference"], 0, 6)
         self.assertLess(result["responses"]["left_deflection"], 0.09 + 1e-6)
         # Two other starts come to the same mass.
-        for k, start in enumerate((("20", "2e6", "31"), ("-15", "1.5e6",
-                                                         "39"))):
+        for k, start in some(enumerate((("20", "2e6", "31"),
+                                        ("-15", "1.5e6", "39")))):
             moved = [f"design.{name}.initial={value}" for name, value in zip(
                 ("support_x", "fill", "radius"), start)]
             done, other = self.minimum(
@@ -260,7 +260,7 @@ class Unusable(ProgramTest):
              expression=None):
         response = "" if expression is None else (
             f'[responses.made]\nkind = "expression"\nvalue = "{expression}"\n')
-        for method in self.MINIMIZE:
+        for method in some(self.MINIMIZE):
             with self.subTest(minimize=method):
                 self.ends(f"""{response}
 [study]
@@ -270,7 +270,7 @@ constraints = [{{ response = {constraint} }}]
 method = "{method}"
 max_evaluations = 15
 """, replacements, *told)
-        for method in self.MATCH:
+        for method in some(self.MATCH):
             with self.subTest(match=method):
                 self.ends(f"""{response}
 [study]

@@ -113,6 +113,7 @@ class Tutorial(ProgramTest):
         self.assertGreater(commands, 8)
         self.assertGreater(shown, 5)
 
+    @program.more
     def test_bracket(self):
         commands, shown = self.follow(DOCS / "tutorial-bracket.md")
         self.assertGreater(commands, 4)

@@ -8,7 +8,7 @@ import re
 import unittest
 
 from export_test import run_program
-from program import ProgramTest
+from program import ProgramTest, some
 
 # Two bands and a disk meet at a circle; 2000 elements.
 PIPE = """title = "A pipe with a bulkhead"
@@ -86,7 +86,7 @@ direction = [0, 0, 1]
 kind = "mass"
 """
 FILES = ["result.json", "film.vtp", "part.vtu", "part_surface.vtp",
-         "part_3.stl", "report.html"]
+         "part_5.stl", "report.html"]
 FORMATS = ["stl", "3mf", "obj", "step", "step-faceted", "fe", "inp", "bdf", "msh",
            "vtu"]
 
@@ -97,7 +97,8 @@ class Walls(ProgramTest):
 
     def test_are_run_and_exported(self):
         out = self.folder / "out"
-        self.expect(self.call("run", self.case(), "--out", out), 0)
+        self.expect(self.call("run", self.case(), "--set", "resolution.fea=10",
+                              "--set", "resolution.film=5", "--out", out), 0)
         result = self.result(out)
         self.assertEqual(result["status"], "converged")
         self.assertGreater(result["responses"]["mass"], 0)
@@ -133,7 +134,7 @@ EndFor
         return said, [float(volume) for volume in found], file
 
     def test_smooth_step_is_the_wall(self):
-        for seed in (1, 2):
+        for seed in some((1, 2)):
             draw = random.Random(seed)
             text = (PIPE.replace("initial = 30.0",
                                  f"initial = {draw.uniform(29, 31):.4f}")

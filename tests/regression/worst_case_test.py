@@ -60,10 +60,11 @@ constraints = [{ response = "sigma", max = "20 MPa" }]
 
 
 class WorstCase(ProgramTest):
-    def run_case(self, text, *options, out="out", code=0):
+    def run_case(self, text, *options, out="out", code=0, pictures=False):
         path = self.folder / "case.toml"
         path.write_text(text)
-        done = self.call("run", path, "--out", out, "--no-frames", *options)
+        done = self.call("run", path, "--out", out, "--no-frames", *options,
+                         pictures=pictures)
         self.assertEqual(done.returncode, code, done.stderr + done.stdout)
         folder = self.folder / out
         return folder, json.loads((folder / "result.json").read_text()), done
@@ -93,7 +94,7 @@ class WorstCase(ProgramTest):
                           (out / "part_surface.vtp").read_bytes())
 
     def test_each_load_case_has_its_picture(self):
-        out, _, _ = self.run_case(CASE)
+        out, _, _ = self.run_case(CASE, pictures=True)
         names = {path.name for path in out.glob("*.png")}
         self.assertEqual(names, {
             "film.png", "overview.png", "part.png", "part_pull.png",
@@ -169,7 +170,7 @@ constraints = [{ response = "stress", max = 1 }]
         self.assertAlmostEqual(shown, 1e3 * result["responses"]["mass"], 5)
 
     def test_nothing_of_an_earlier_answer_stays(self):
-        out, _, _ = self.run_case(CASE)
+        out, _, _ = self.run_case(CASE, pictures=True)
         mine = {"notes.txt": "mine", "part_final.stl": "mine", "mine.png": "mine"}
         for name, text in mine.items():
             (out / name).write_text(text)
@@ -186,7 +187,8 @@ constraints = [{ response = "stress", max = 1 }]
         exported = list(out.glob("*.obj"))
         self.assertEqual(len(exported), 1)
         # A film that does not stand leaves its picture, and no part.
-        _, failed, done = self.run_case(CASE, "--set", "length=150", code=3)
+        _, failed, done = self.run_case(CASE, "--set", "length=150", code=3,
+                                        pictures=True)
         self.assertEqual(failed["status"], "failed")
         for name in ("part.vtu", "part_surface.vtp", "part_7.stl"):
             self.assertFalse((out / name).exists(), name)
@@ -214,7 +216,7 @@ constraints = [{ response = "stress", max = 1 }]
         path.write_text(CASE)
         for options, there in ((["--out", "film"], True),
                                (["--out", "film", "--no-pictures"], False)):
-            done = self.call("evolve", path, *options)
+            done = self.call("evolve", path, *options, pictures=True)
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertEqual((self.folder / "film" / "film.png").exists(), there)
         # One that is the user's stays.

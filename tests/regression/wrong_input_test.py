@@ -304,8 +304,8 @@ class OddSurroundings(ProgramTest):
 
     def test_two_runs_into_one_folder(self):
         first = self.start("run", program.CASE, "--out", "out",
-                           "--no-pictures", "--set", "resolution.fea=10",
-                           "--set", "resolution.film=5")
+                           "--no-pictures", "--set", "resolution.fea=16",
+                           "--set", "resolution.film=8")
         try:
             while not (self.folder / "out" / "study.sqlite").exists():
                 self.assertIsNone(first.poll(), "first run ended too early")

@@ -7,6 +7,7 @@
 
 #include "tests/support/delaunay_curves.h"
 #include "tests/support/film_complexes.h"
+#include "tests/support/more.h"
 #include "tests/verification/film_cases.h"
 
 namespace meniscus::film_robustness_test {
@@ -49,15 +50,15 @@ void expect_pressure(const Found& found, double exact) {
 }
 
 TEST(FilmRobustness, Cylinder) {
-  const Found found = found_raw(test_films::catenoid_start(), 6);
-  EXPECT_EQ(found.report().facets, 245760);
+  const Found found = found_raw(test_films::catenoid_start(), more_or(6, 5));
+  EXPECT_EQ(found.report().facets, more_or(245760, 61440));
   expect_energy(found, test_films::catenoid(1.0, 1.0).area);
 }
 
 TEST(FilmRobustness, Cube) {
   const test_films::Sphere exact = test_films::sphere_of_volume(1.0);
-  const Found found = found_raw(test_films::cube_start(), 5);
-  EXPECT_EQ(found.report().facets, 221184);
+  const Found found = found_raw(test_films::cube_start(), more_or(5, 4));
+  EXPECT_EQ(found.report().facets, more_or(221184, 55296));
   expect_energy(found, exact.area);
   expect_pressure(found, exact.pressure);
 }

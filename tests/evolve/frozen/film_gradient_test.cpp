@@ -372,7 +372,7 @@ TEST(FilmGradient, OfFilmsThatSlideOnBentWalls) {
     const auto design = [kind](double p) { return sliding_on(kind, p); };
     for (const int refinements : {0, 1}) {
       const frozen::FilmModel model = frozen::FilmModel::freeze(
-          design(0), {.edge = 0.3, .refinements = refinements});
+          design(0), {.edge = 0.45, .refinements = refinements});
       ASSERT_FALSE(model.reference().failure)
           << model.reference().failure->message;
       expect_exact(model, design, 0.2, 4e-3);

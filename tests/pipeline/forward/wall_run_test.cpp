@@ -16,6 +16,7 @@
 #include "pipeline/forward/walls.h"
 #include "pipeline/responses/responses.h"
 #include "tests/support/case_text.h"
+#include "tests/support/more.h"
 
 namespace meniscus::wall_run_test {
 namespace {
@@ -148,7 +149,7 @@ TEST(WallRuns, OfAPipeAreLames) {
 TEST(WallRuns, HaveTwoElementsAcross) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> part(0.0, 1.0);
-  for (int trial = 0; trial < 8; ++trial) {
+  for (int trial = 0; trial < more_or(8, 3); ++trial) {
     const double thick = 5.0 + 3.0 * part(random);
     const double edge = thick * (0.6 + 1.4 * part(random));
     SCOPED_TRACE(fmt::format("wall {:.3g}, edge {:.3g}", thick, edge));
