@@ -30,8 +30,10 @@ struct Support {
   /// Of Components: what the fixed ones are held at, along the same axes;
   /// without it 0 [length]. Whoever may ever enforce one gives it, if only 0.
   std::optional<Vec3> displacement = {};
-  /// Of shells: rotations about the same axes, held at 0.
+  /// Of shells: rotations about the same axes, held at 0 or as displacements
+  /// are [rad].
   std::array<bool, 3> fix_rotation = {};
+  std::optional<Vec3> rotation = {};
   /// Of shells: holds the surface's node that is nearest to it, and no other
   /// [length].
   std::optional<Vec3> at = {};

@@ -20,7 +20,7 @@ ShellAssembly::ShellAssembly(const ShellMesh& mesh, const ShellFreedom& freedom)
   start_.assign(1, 0);
   std::vector<int> rows;
   for (int j = 0; j < nodes; ++j) {
-    rows.clear();
+    rows.assign(1, j);
     for (int k = list.start[j]; k < list.start[j + 1]; ++k) {
       for (const int i : mesh.facets[list.facet[k]]) {
         if (i >= j) {
@@ -42,7 +42,7 @@ ShellAssembly::ShellAssembly(const ShellMesh& mesh, const ShellFreedom& freedom)
 
 SparseMatrix ShellAssembly::sum(const MatrixOfFacet& matrix) const {
   const int n = freedom_.unknowns();
-  const int nodes = freedom_.nodes();
+  const int nodes = freedom_.seats();
   SparseMatrix A(n, n);
   int* outer = A.outerIndexPtr();
   outer[0] = 0;
@@ -115,7 +115,7 @@ void ShellAssembly::add(int facet, const FacetMatrix& K,
 }
 
 std::vector<int> ShellAssembly::elimination_order(int last_nodes) const {
-  const int nodes = freedom_.nodes() - last_nodes;
+  const int nodes = freedom_.seats() - last_nodes;
   SparseMatrix graph(nodes, nodes);
   for (int j = 0; j < nodes; ++j) {
     graph.startVec(j);
@@ -134,7 +134,7 @@ std::vector<int> ShellAssembly::elimination_order(int last_nodes) const {
   for (const int node : nested_dissection(graph)) {
     add(node);
   }
-  for (int node = nodes; node < freedom_.nodes(); ++node) {
+  for (int node = nodes; node < freedom_.seats(); ++node) {
     add(node);
   }
   return order;

@@ -17,6 +17,7 @@ using MatrixOfFacet = std::function<FacetMatrix(int facet)>;
 /// once.
 class ShellAssembly {
  public:
+  /// Facets are between the unknowns' seats (rigid_rims.h has such a mesh).
   ShellAssembly(const ShellMesh& mesh, const ShellFreedom& freedom);
 
   /// Sums of all facets' matrices, computed in threads and added in the facets'

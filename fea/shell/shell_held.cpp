@@ -34,24 +34,30 @@ std::string motion_text(const Eigen::Matrix<double, 6, 1>& motion) {
 
 namespace {
 
-/// Facets that hang together.
+/// Facets that hang together, by rigid rims too.
 struct Piece {
   std::vector<int> nodes;
+  std::vector<int> rims;  // their seats
   Vec3 center = Vec3::Zero();
   double size = 0.0;  // about the center
 };
 
-std::vector<Piece> pieces_of(const ShellMesh& mesh) {
+std::vector<Piece> pieces_of(const ShellMesh& mesh,
+                             const ShellFreedom& freedom) {
   const auto nodes = static_cast<int>(mesh.nodes.size());
-  UnionFind joined(nodes);
+  UnionFind joined(freedom.seats());
   for (const auto& facet : mesh.facets) {
-    for (int k = 1; k < kNodes; ++k) {
+    for (int k = 0; k < kNodes; ++k) {
       joined.join(facet[0], facet[k]);
+      joined.join(facet[k], freedom.seat(facet[k]));
     }
   }
-  std::vector<Piece> all(mesh.nodes.size());
+  std::vector<Piece> all(freedom.seats());
   for (int i = 0; i < nodes; ++i) {
     all[joined.root(i)].nodes.push_back(i);
+  }
+  for (int rim = nodes; rim < freedom.seats(); ++rim) {
+    all[joined.root(rim)].rims.push_back(rim);
   }
   std::vector<Piece> pieces;
   for (Piece& piece : all) {
@@ -90,17 +96,25 @@ Eigen::MatrixXd motions_left(const ShellMesh& mesh, const ShellFreedom& freedom,
                              const Piece& piece,
                              const std::map<int, Mat3>& springs) {
   Matrix6 held = Matrix6::Zero();
-  for (const int i : piece.nodes) {
-    if (freedom.free_count(i) < 6) {
-      const auto Q = freedom.basis(i);
-      const Matrix6 R = rigid_motions(mesh.nodes[i] - piece.center, piece.size);
+  const auto hold = [&](int seat, const Vec3& place) {
+    const auto Q = freedom.basis(seat);
+    if (Q.cols() < 6) {
+      const Matrix6 R = rigid_motions(place - piece.center, piece.size);
       const Matrix6 P = Matrix6::Identity() - Q * Q.transpose();
       held += R.transpose() * P * R;
+    }
+  };
+  for (const int i : piece.nodes) {
+    if (freedom.seat(i) == i) {
+      hold(i, mesh.nodes[i]);
     }
     if (const auto pull = springs.find(i); pull != springs.end()) {
       const Matrix6 R = rigid_motions(mesh.nodes[i] - piece.center, piece.size);
       held += R.topRows<3>().transpose() * pull->second * R.topRows<3>();
     }
+  }
+  for (const int rim : piece.rims) {
+    hold(rim, freedom.rims()[rim - freedom.nodes()].point);
   }
   const auto motions = symmetric_eigen(held);
   Eigen::Index left = 0;
@@ -115,7 +129,7 @@ Eigen::MatrixXd motions_left(const ShellMesh& mesh, const ShellFreedom& freedom,
 Eigen::MatrixXd free_motions(const ShellMesh& mesh,
                              const ShellFreedom& freedom) {
   std::vector<VectorX> columns;
-  for (const Piece& piece : pieces_of(mesh)) {
+  for (const Piece& piece : pieces_of(mesh, freedom)) {
     const Eigen::MatrixXd left = motions_left(mesh, freedom, piece, {});
     for (Eigen::Index k = 0; k < left.cols(); ++k) {
       VectorX six = VectorX::Zero(6L * freedom.nodes());
@@ -125,7 +139,7 @@ Eigen::MatrixXd free_motions(const ShellMesh& mesh,
             left.col(k);
         six.segment<3>(6L * i + 3) /= piece.size;
       }
-      columns.push_back(freedom.restrict(six));
+      columns.push_back(freedom.unknowns_of(six));
     }
   }
   Eigen::MatrixXd motions(freedom.unknowns(),
@@ -139,7 +153,7 @@ Eigen::MatrixXd free_motions(const ShellMesh& mesh,
 void check_held(const ShellMesh& mesh, const ShellFreedom& freedom,
                 const std::vector<GroundSpring>& springs) {
   const std::map<int, Mat3> pulls = sprung(springs);
-  for (const Piece& piece : pieces_of(mesh)) {
+  for (const Piece& piece : pieces_of(mesh, freedom)) {
     const Eigen::MatrixXd left = motions_left(mesh, freedom, piece, pulls);
     if (left.cols() > 0) {
       throw SolverError(fmt::format(

@@ -21,7 +21,8 @@ Matrix6 rigid_motions(const Vec3& arm, double size);
 /// "turn about (0, 0, 1)", for messages, of factors of these.
 std::string motion_text(const Eigen::Matrix<double, 6, 1>& motion);
 
-/// The rigid motions that facets which hang together are free to make, one a
+/// The rigid motions that facets which hang together, by rigid rims too, are
+/// free to make, one a
 /// column, on the unknowns.
 Eigen::MatrixXd free_motions(const ShellMesh& mesh,
                              const ShellFreedom& freedom);

@@ -79,16 +79,22 @@ FacetMatrix ShellStiffness::of(int facet) const {
 }
 
 VectorX ShellStiffness::times(const VectorX& u) const {
-  std::vector<FacetVector> forces(mesh_.facets.size());
+  return facets_times(
+      mesh_, [this](int facet) { return of(facet); }, u);
+}
+
+VectorX facets_times(const ShellMesh& mesh, const MatrixOfFacet& matrix,
+                     const VectorX& u) {
+  std::vector<FacetVector> forces(mesh.facets.size());
   parallel_for(static_cast<std::ptrdiff_t>(forces.size()),
                [&](std::ptrdiff_t k) {
                  const auto facet = static_cast<int>(k);
-                 forces[k] = of(facet) * numbers_of(mesh_, facet, u);
+                 forces[k] = matrix(facet) * numbers_of(mesh, facet, u);
                });
   VectorX f = VectorX::Zero(u.size());
   for (std::size_t k = 0; k < forces.size(); ++k) {
     for (int i = 0; i < kNodes; ++i) {
-      f.segment<6>(6L * mesh_.facets[k][i]) += forces[k].segment<6>(6 * i);
+      f.segment<6>(6L * mesh.facets[k][i]) += forces[k].segment<6>(6 * i);
     }
   }
   return f;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "fea/shell/facet_matrices.h"
+#include "fea/shell/shell_assembly.h"
 #include "fea/shell/shell_mesh.h"
 #include "fea/shell/shell_supports.h"
 
@@ -36,5 +37,10 @@ class ShellStiffness {
   std::vector<LaminateLaw> laws_;
   std::map<int, std::vector<GroundSpring>> springs_;  // by facet
 };
+
+/// What all facets' matrices make of `u`, 6 per node: the same bits for any
+/// number of threads.
+VectorX facets_times(const ShellMesh& mesh, const MatrixOfFacet& matrix,
+                     const VectorX& u);
 
 }  // namespace meniscus::shell

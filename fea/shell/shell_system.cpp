@@ -1,10 +1,10 @@
 #include "fea/shell/shell_system.h"
 
-#include <fmt/format.h>
+#include <utility>
 
 #include "core/error.h"
 #include "fea/shell/facet_geometric.h"
-#include "fea/shell/facet_loads.h"
+#include "fea/shell/rigid_rims.h"
 #include "fea/shell/shell_held.h"
 
 namespace meniscus::shell {
@@ -14,21 +14,39 @@ ShellSystem::ShellSystem(const ShellMesh& mesh,
                          const std::vector<NodeSupport>& supports,
                          const FacetRule& rule,
                          const ShellFactorOptions& options,
-                         const std::vector<GroundSpring>& springs)
+                         const std::vector<GroundSpring>& springs,
+                         const std::vector<RigidRim>& rims)
     : mesh_(mesh),
       sections_(sections),
       rule_(rule),
       stiffness_(mesh, sections, rule, springs),
-      freedom_(static_cast<int>(mesh.nodes.size()), supports),
-      assembly_(mesh_, freedom_) {
+      freedom_(static_cast<int>(mesh.nodes.size()), supports, rims),
+      seats_(on_seats(mesh, freedom_)),
+      assembly_(seats_, freedom_) {
   check_held(mesh_, freedom_, springs);
-  factor_.emplace(
-      mesh_, freedom_, [this](int facet) { return stiffness_.of(facet); },
-      options);
+  if (freedom_.unknowns() == 0) {
+    throw InvalidInput(
+        "supports and rigid rims leave no node of the shell free to move; hold "
+        "less of it");
+  }
+  factor_.emplace(seats_, freedom_,
+                  seated([this](int facet) { return stiffness_.of(facet); }),
+                  options);
+}
+
+/// By the numbers of seats.
+MatrixOfFacet ShellSystem::seated(MatrixOfFacet matrix) const {
+  if (freedom_.rims().empty()) {
+    return matrix;
+  }
+  return [this, matrix = std::move(matrix)](int facet) {
+    return on_seats(freedom_, mesh_.facets[facet], matrix(facet));
+  };
 }
 
 SparseMatrix ShellSystem::stiffness() const {
-  return assembly_.sum([this](int facet) { return stiffness_.of(facet); });
+  return assembly_.sum(
+      seated([this](int facet) { return stiffness_.of(facet); }));
 }
 
 ShellSolution ShellSystem::solve(const ShellLoads& loads) const {
@@ -52,21 +70,42 @@ VectorX ShellSystem::solve_forces(const VectorX& forces) const {
          freedom_.held_values();
 }
 
-SparseMatrix ShellSystem::geometric(const ShellLoads& loads,
-                                    const VectorX& displacement) const {
-  const std::vector<FacetLoad> own = facet_loads(mesh_, loads);
-  return assembly_.sum([&](int facet) {
+MatrixOfFacet ShellSystem::geometric_of(const ShellLoads& loads,
+                                        const std::vector<FacetLoad>& own,
+                                        const VectorX& displacement) const {
+  return [&, this](int facet) {
     return facet_geometric(facet_of(mesh_, sections_, stiffness_.laws(), facet),
                            loads, own[facet],
                            numbers_of(mesh_, facet, displacement));
-  });
+  };
+}
+
+MatrixOfFacet ShellSystem::mass_of() const {
+  return [this](int facet) {
+    return facet_mass(facet_of(mesh_, sections_, stiffness_.laws(), facet),
+                      rule_);
+  };
+}
+
+SparseMatrix ShellSystem::geometric(const ShellLoads& loads,
+                                    const VectorX& displacement) const {
+  const std::vector<FacetLoad> own = facet_loads(mesh_, loads);
+  return assembly_.sum(seated(geometric_of(loads, own, displacement)));
 }
 
 SparseMatrix ShellSystem::mass() const {
-  return assembly_.sum([this](int facet) {
-    return facet_mass(facet_of(mesh_, sections_, stiffness_.laws(), facet),
-                      rule_);
-  });
+  return assembly_.sum(seated(mass_of()));
+}
+
+VectorX ShellSystem::mass_times(const VectorX& x) const {
+  return facets_times(mesh_, mass_of(), x);
+}
+
+VectorX ShellSystem::geometric_times(const ShellLoads& loads,
+                                     const VectorX& displacement,
+                                     const VectorX& x) const {
+  const std::vector<FacetLoad> own = facet_loads(mesh_, loads);
+  return facets_times(mesh_, geometric_of(loads, own, displacement), x);
 }
 
 }  // namespace meniscus::shell

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/math/linear_solve.h"
+#include "fea/shell/facet_loads.h"
 #include "fea/shell/shell_assembly.h"
 #include "fea/shell/shell_factor.h"
 #include "fea/shell/shell_loads.h"
@@ -35,7 +36,8 @@ class ShellSystem {
               const std::vector<NodeSupport>& supports,
               const FacetRule& rule = facet_rule(),
               const ShellFactorOptions& options = {},
-              const std::vector<GroundSpring>& springs = {});
+              const std::vector<GroundSpring>& springs = {},
+              const std::vector<RigidRim>& rims = {});
 
   ShellSolution solve(const ShellLoads& loads) const;
 
@@ -60,12 +62,25 @@ class ShellSystem {
   SparseMatrix geometric(const ShellLoads& loads,
                          const VectorX& displacement) const;
 
+  /// M x and K_g x of all nodes, 6 numbers each, as `x` has.
+  VectorX mass_times(const VectorX& x) const;
+  VectorX geometric_times(const ShellLoads& loads, const VectorX& displacement,
+                          const VectorX& x) const;
+
  private:
+  MatrixOfFacet mass_of() const;
+  /// `own`: the loads' facets, on loan.
+  MatrixOfFacet geometric_of(const ShellLoads& loads,
+                             const std::vector<FacetLoad>& own,
+                             const VectorX& displacement) const;
+  MatrixOfFacet seated(MatrixOfFacet matrix) const;
+
   const ShellMesh& mesh_;
   const std::vector<Section>& sections_;
   const FacetRule& rule_;
   ShellStiffness stiffness_;
   ShellFreedom freedom_;
+  ShellMesh seats_;  // the mesh on them
   ShellAssembly assembly_;
   std::optional<ShellFactor> factor_;
 };

@@ -27,7 +27,8 @@ struct Substructures {
   int part_of(int leaf) const { return leaf_count() + leaf; }
 };
 
-/// Leaves of about equally many facets: 2^levels of them.
+/// Leaves of about equally many facets: 2^levels of them. Nodes of no facet are
+/// of no part, and facets may have a place several times (rigid_rims.h).
 Substructures cut_shell(const ShellMesh& mesh, int levels);
 
 }  // namespace meniscus::shell

@@ -184,17 +184,25 @@ void add_gradient(double factor, const ShellGradient& more,
   sum.by_actions.add(factor, more.by_actions);
 }
 
-/// -x . K x, which no loads change.
-ShellGradient minus_stiffness_work(const ShellMesh& mesh,
-                                   const std::vector<Section>& sections,
-                                   const AddSpringWork& springs,
-                                   const VectorX& x) {
-  ShellGradient gradient = residual_gradient(mesh, sections, {}, x, x);
-  gradient.by_actions = {};
-  if (springs) {
-    springs(x, gradient.by_nodes);
+void add_work(double factor, const ModeWork& more, ModeWork& sum) {
+  add_gradient(factor, more, sum);
+  sum.by_points.resize(more.by_points.size(), Vec3::Zero());
+  for (std::size_t r = 0; r < more.by_points.size(); ++r) {
+    sum.by_points[r] += factor * more.by_points[r];
   }
-  return gradient;
+}
+
+/// -x . K x, which no loads change, of a mode.
+ModeWork minus_stiffness_work(const ShellMesh& mesh,
+                              const std::vector<Section>& sections,
+                              const AddHeldWork& held, std::size_t mode,
+                              const VectorX& x) {
+  ModeWork work{residual_gradient(mesh, sections, {}, x, x), {}};
+  work.by_actions = {};
+  if (held) {
+    held(mode, x, work);
+  }
+  return work;
 }
 
 /// Twice the kinetic energy of unit frequency of one facet.
@@ -305,7 +313,7 @@ ModeWork factor_functional(const ShellMesh& mesh,
                            const std::vector<Section>& sections,
                            const ShellLoads& loads, const VectorX& u,
                            const modes::WeightedModes& modes,
-                           const AddSpringWork& springs) {
+                           const AddHeldWork& held) {
   ModeWork result{empty_gradient(mesh), VectorX::Zero(u.size())};
   for (std::size_t k = 0; k < modes.values.size(); ++k) {
     const double weight = modes.weights[static_cast<Eigen::Index>(k)];
@@ -317,8 +325,8 @@ ModeWork factor_functional(const ShellMesh& mesh,
     const double by_stiffness = -weight / geometric.value;
     const double by_geometric = modes.values[k] * by_stiffness;
     result.value += weight * modes.values[k];
-    add_gradient(-by_stiffness,
-                 minus_stiffness_work(mesh, sections, springs, x), result);
+    add_work(-by_stiffness, minus_stiffness_work(mesh, sections, held, k, x),
+             result);
     add_gradient(by_geometric, geometric, result);
     result.by_displacement += by_geometric * geometric.by_displacement;
   }
@@ -328,7 +336,7 @@ ModeWork factor_functional(const ShellMesh& mesh,
 ModeWork frequency_functional(const ShellMesh& mesh,
                               const std::vector<Section>& sections,
                               const modes::WeightedModes& modes,
-                              const AddSpringWork& springs) {
+                              const AddHeldWork& held) {
   constexpr double kTurn = 2.0 * std::numbers::pi;
   ModeWork result{empty_gradient(mesh), {}};
   for (std::size_t k = 0; k < modes.values.size(); ++k) {
@@ -343,8 +351,8 @@ ModeWork frequency_functional(const ShellMesh& mesh,
     const double by_stiffness =
         weight / (2.0 * kTurn * kTurn * frequency * inertia.value);
     result.value += weight * frequency;
-    add_gradient(-by_stiffness,
-                 minus_stiffness_work(mesh, sections, springs, x), result);
+    add_work(-by_stiffness, minus_stiffness_work(mesh, sections, held, k, x),
+             result);
     add_gradient(-std::pow(kTurn * frequency, 2) * by_stiffness, inertia,
                  result);
   }

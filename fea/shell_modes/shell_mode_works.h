@@ -19,6 +19,7 @@ namespace meniscus::shell {
 /// which follow them.
 struct ModeWork : ShellGradient {
   VectorX by_displacement;
+  Points by_points = {};  // of rigid rims; empty: 0
 };
 
 /// x^T K_g(u) x, `u` the solution under `loads`. Exact, by a tape over each
@@ -37,24 +38,26 @@ ShellGradient inertia_work(const ShellMesh& mesh,
 SparseMatrix nodal_mass(const ShellMesh& mesh,
                         const std::vector<Section>& sections);
 
-/// Adds the derivatives by nodes of -x . S x, S the springs'.
-using AddSpringWork = std::function<void(const VectorX& x, Points& by_nodes)>;
+/// Adds the derivatives, by nodes and rims' points, that springs and rigid rims
+/// have in -x . A x: A is K + factor K_g, or K - omega^2 M, of that mode.
+using AddHeldWork =
+    std::function<void(std::size_t mode, const VectorX& x, ModeWork& work)>;
 
 /// sum weight_k factor_k, factors of the loads at the solution `u` under them:
 /// d lambda = -x^T (dK + lambda dK_g) x / x^T K_g x. Throws as the works.
-/// `springs` as of frequency_functional().
+/// `held` as of frequency_functional().
 ModeWork factor_functional(const ShellMesh& mesh,
                            const std::vector<Section>& sections,
                            const ShellLoads& loads, const VectorX& u,
                            const modes::WeightedModes& modes,
-                           const AddSpringWork& springs = {});
+                           const AddHeldWork& held = {});
 
 /// sum weight_k f_k: with omega = 2 pi f, d omega^2 = x^T (dK - omega^2 dM) x /
-/// x^T M x. By displacement nothing. `springs`: of those that K has, too; empty
-/// where it has none.
+/// x^T M x. By displacement nothing. `held`: of the springs that K has, too,
+/// and of rigid rims; empty where it has none.
 ModeWork frequency_functional(const ShellMesh& mesh,
                               const std::vector<Section>& sections,
                               const modes::WeightedModes& modes,
-                              const AddSpringWork& springs = {});
+                              const AddHeldWork& held = {});
 
 }  // namespace meniscus::shell

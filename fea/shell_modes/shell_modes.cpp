@@ -128,7 +128,7 @@ solver::Columns shapes_to_begin_with(const ShellFreedom& freedom,
   }
   for (std::size_t k = 0; k < more; ++k) {
     start.col(own.cols() + static_cast<Eigen::Index>(k)) =
-        freedom.restrict((*shapes)[k]);
+        freedom.unknowns_of((*shapes)[k]);
   }
   return start;
 }

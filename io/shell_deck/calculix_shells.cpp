@@ -374,6 +374,12 @@ class ShellWriter {
 
 std::string calculix_shell_deck(const ShellDeck& deck) {
   check_shell_deck(deck);
+  if (!deck.rigid.empty()) {
+    throw InvalidInput(fmt::format(
+        "'{}' moves as a rigid body; CalculiX couples no rotations of shells' "
+        "nodes to one: write the deck of Nastran (bdf)",
+        deck.rigid.front().name));
+  }
   return ShellWriter(deck).text();
 }
 

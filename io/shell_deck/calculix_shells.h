@@ -23,8 +23,9 @@
 namespace meniscus::shell_deck {
 
 /// The deck's text. Throws InvalidInput as check_shell_deck() and
-/// held_shell_nodes() do, and for two sections whose thicknesses follow the
-/// place and differ at a node.
+/// held_shell_nodes() do, for rigid bodies, which CalculiX's couplings do not
+/// have of nodes that turn along, and for two sections whose thicknesses follow
+/// the place and differ at a node.
 std::string calculix_shell_deck(const ShellDeck& deck);
 
 /// The same into a file; IoError.

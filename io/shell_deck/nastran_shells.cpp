@@ -63,6 +63,7 @@ class ShellBulk {
     grid();
     sections();
     elements();
+    rigid_bodies();
     for (std::size_t s = 0; s < deck_.steps.size(); ++s) {
       write_step(deck_.steps[s], static_cast<int>(s) + 1);
     }
@@ -216,6 +217,18 @@ class ShellBulk {
         append_vector(t, fields);
       }
       text_ += io::long_card("CTRIA6", fields);
+    }
+  }
+
+  void rigid_bodies() {
+    auto next = static_cast<int>(deck_.facets.size());
+    for (const DeckRigidBody& body : deck_.rigid) {
+      comment(fmt::format("'{}' moves as a rigid body", body.name));
+      io::Fields fields = {number(++next), number(body.point + 1), "123456"};
+      for (const int node : body.nodes) {
+        fields.push_back(number(node + 1));
+      }
+      text_ += io::short_card("RBE2", fields);
     }
   }
 

@@ -3,9 +3,9 @@
 /// Grid points and elements are numbered from 1 in the deck's order; a PSHELL
 /// and a MAT1 per section, whose facets have corner thicknesses of their own
 /// where these follow the place, and ZOFFS where the wall lies beside the
-/// nodes. Nodes that are held along axes of their own have these as their
-/// displacement frame (CORD2R). A SUBCASE per load case, a SET per film and
-/// rim.
+/// nodes. RBE2 a rigid body. Nodes that are held along axes of their own have
+/// these as their displacement frame (CORD2R). A SUBCASE per load case, a SET
+/// per film and rim.
 #pragma once
 
 #include <filesystem>

@@ -52,6 +52,21 @@ void check_sections(const ShellDeck& deck) {
   }
 }
 
+void check_rigid(const ShellDeck& deck) {
+  const auto nodes = static_cast<int>(deck.nodes.size());
+  for (const DeckRigidBody& body : deck.rigid) {
+    std::vector<int> all = body.nodes;
+    all.push_back(body.point);
+    for (const int node : all) {
+      if (node < 0 || node >= nodes) {
+        throw InvalidInput(
+            fmt::format("the rigid '{}' of the deck has node {} of {}",
+                        body.name, node, nodes));
+      }
+    }
+  }
+}
+
 void check_step(const ShellDeck& deck, const DeckShellStep& step) {
   const auto nodes = static_cast<int>(deck.nodes.size());
   const auto facets = static_cast<int>(deck.facets.size());
@@ -95,6 +110,7 @@ void check_step(const ShellDeck& deck, const DeckShellStep& step) {
 void check_shell_deck(const ShellDeck& deck) {
   check_facets(deck);
   check_sections(deck);
+  check_rigid(deck);
   for (const DeckShellStep& step : deck.steps) {
     check_step(deck, step);
   }

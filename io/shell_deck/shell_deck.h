@@ -45,6 +45,14 @@ struct DeckShellSupport {
   std::optional<Mat3> axes = {};  // unit vectors, one a column; else x y z
 };
 
+/// Nodes that move as one rigid body with `point`, a node of no facet, their
+/// rotations too: of all steps.
+struct DeckRigidBody {
+  std::string name;
+  int point = 0;           // from 0
+  std::vector<int> nodes;  // the same
+};
+
 /// On a facet, positive along its normal [pressure].
 struct DeckFacetPressure {
   int facet = 0;
@@ -74,6 +82,7 @@ struct ShellDeck {
   std::vector<std::array<double, 6>> thickness;  // at each facet's nodes
   std::vector<DeckShellSection> sections;
   std::vector<DeckNodeSet> sets;  // films, rims
+  std::vector<DeckRigidBody> rigid = {};
   std::vector<DeckShellStep> steps;
 };
 

@@ -375,7 +375,7 @@ struct DirectionsEntry {
 /// The numbers of a support are here, not in its struct.
 struct SupportEntry {
   loads::Support support;
-  std::optional<QuantityVector> displacement, at;
+  std::optional<QuantityVector> displacement, rotation, at;
   SourceLine line = 0;
 };
 

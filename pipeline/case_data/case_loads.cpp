@@ -82,7 +82,9 @@ loads::Support support_of(const SupportEntry& entry, const CaseValues& values) {
   loads::Support support = entry.support;
   require_fixed(entry.displacement,
                 {support.fix_x, support.fix_y, support.fix_z}, "fix", values);
+  require_fixed(entry.rotation, support.fix_rotation, "fix_rotation", values);
   support.displacement = value_of(entry.displacement, values);
+  support.rotation = value_of(entry.rotation, values);
   support.at = value_of(entry.at, values);
   return support;
 }
@@ -267,7 +269,8 @@ bool moves_supports(const loads::LoadCase& load_case) {
   return std::any_of(
              load_case.supports.begin(), load_case.supports.end(),
              [](const loads::Support& support) {
-               return !loads::value_of(support.displacement).isZero(0.0);
+               return !loads::value_of(support.displacement).isZero(0.0) ||
+                      !loads::value_of(support.rotation).isZero(0.0);
              }) ||
          std::any_of(load_case.pins.begin(), load_case.pins.end(),
                      [](const loads::RigidPin& pin) {

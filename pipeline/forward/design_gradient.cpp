@@ -13,6 +13,7 @@
 #include "pipeline/case_data/response_entries.h"
 #include "pipeline/forward/frozen_part.h"
 #include "pipeline/shells/joint_part.h"
+#include "pipeline/shells/shell_holds.h"
 
 namespace meniscus::forward {
 
@@ -79,6 +80,14 @@ class Adjoint {
         .load_cases[static_cast<std::size_t>(back.load_case)];
   }
 
+  /// Of a shell; on loan.
+  shell::RimPair rim_pair(const BackwardCase& back) const {
+    const shells::ShellCase& own =
+        in_.context.shell->cases[static_cast<std::size_t>(back.load_case)];
+    return {own.displacement, own.reaction, back.lambda,
+            back.adjoint_reactions};
+  }
+
   const GradientInput& in_;
   std::vector<Backward> backwards_;
 };
@@ -127,7 +136,8 @@ void Adjoint::solve_shell_adjoints(DesignGradient& result) {
         right = shell::with_rotations(right);
       }
       back.lambda = solved.system->solve_forces(right);
-      if (loads::enforces(load_case_of(back))) {
+      if (loads::enforces(load_case_of(back)) ||
+          !load_case_of(back).pins.empty()) {
         back.adjoint_reactions =
             solved.system->stiffness_times(back.lambda) - right;
       }
@@ -144,7 +154,11 @@ shell::ShellGradient Adjoint::work_by_places(const Backward& backward,
   const auto c = static_cast<std::size_t>(back.load_case);
   const shells::ShellCase& own = shell.cases[c];
   if (!own.joint) {
-    return shells::work_gradient(shell, c, back.lambda, own.displacement);
+    shell::ShellGradient work =
+        shells::work_gradient(shell, c, back.lambda, own.displacement);
+    shell::add_rim_gradient(own.system->freedom().rims(), rim_pair(back),
+                            work.by_nodes);
+    return work;
   }
   const responses::CasePartials& partials = backward.partials.cases[k];
   const VectorX by_displacement =
@@ -381,8 +395,8 @@ double Adjoint::load_rate(const Backward& backward, std::size_t k,
   double rate = shells::work_rate(part, load_case, by, v) +
                 shells::action_rate(part, load_case, by,
                                     backward.partials.cases[k].by_actions);
-  if (loads::enforces(load_case)) {
-    rate += shells::held_rate(part, load_case, by, back.adjoint_reactions);
+  if (loads::enforces(load_case) || !load_case.pins.empty()) {
+    rate += shells::held_rate(part, load_case, by, rim_pair(back));
   }
   return rate;
 }

@@ -48,9 +48,8 @@ void read_fix(CaseContext& context, const CaseTable& table,
               case_data::SupportEntry& entry) {
   loads::Support& support = entry.support;
   const auto fix = table.text("fix");
-  refuse_foreign(context, table, {"rotation"},
-                 "a support by nodes (by = \"rigid\" has it)");
   entry.at = table.vector("at");
+  entry.rotation = table.vector("rotation");
   support.fix_rotation =
       components_of(context, table, "fix_rotation", "\"xyz\"");
   if (!fix) {
@@ -152,7 +151,7 @@ void read_support(CaseContext& context, const CaseTable& table,
     entry.line = table.line();
     read_fix(context, table, entry);
     if (!turns) {
-      refuse_foreign(context, table, {"at", "fix_rotation"},
+      refuse_foreign(context, table, {"at", "fix_rotation", "rotation"},
                      "a support by nodes (by = \"rigid\" and shells have it)");
     }
     for (const std::string& surface : surfaces) {
@@ -389,7 +388,7 @@ void add_load_case(CaseContext& context, const CaseTable& table,
   const case_data::LoadEntry load = *from_any;
   const bool enforces =
       std::any_of(load_case.supports.begin(), load_case.supports.end(),
-                  [](const auto& s) { return bool(s.displacement); }) ||
+                  [](const auto& s) { return s.displacement || s.rotation; }) ||
       std::any_of(load_case.pins.begin(), load_case.pins.end(),
                   [](const auto& p) { return p.displacement || p.rotation; });
   if (load_case.loads.size() > 1 || enforces) {

@@ -171,7 +171,8 @@ std::vector<TableSpec> make_tables() {
          "of rigid, and of shells: rotations that are held, some of "
          "\"xyz\""},
         {"rotation", K::Vector, D::None, false,
-         "of rigid: what they are held at, in radians; 0 when left out"},
+         "of rigid, and of shells: what they are held at, in radians; 0 when "
+         "left out"},
         {"stiffness", K::ConstantVector, std::nullopt, false,
          "of springs along x, y, z: force per displacement and area"},
         {"normal_stiffness", K::Constant, std::nullopt, false,

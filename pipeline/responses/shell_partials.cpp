@@ -1,8 +1,11 @@
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "fea/shell/rigid_rims.h"
 #include "fea/shell/shell_moments.h"
 #include "fea/shell_modes/shell_mode_works.h"
 #include "fea/shell_peaks/shell_norm.h"
@@ -208,6 +211,32 @@ ResponsePartials shell_stress_mean(const ResponseTask& task) {
   return result;
 }
 
+/// What a mode's springs and rigid rims do as nodes and points move.
+void add_held_work(const shells::ShellPart& part, const FoundModes& found,
+                   std::size_t mode, const VectorX& x, shell::ModeWork& work) {
+  const auto load_case = static_cast<std::size_t>(found.load_case);
+  shells::add_spring_gradient(part, load_case, x, x, work.by_nodes);
+  const shells::ShellCase& own = part.cases[load_case];
+  const std::vector<shell::RigidRim>& rims = own.system->freedom().rims();
+  if (rims.empty()) {
+    return;
+  }
+  const double value = found.values[mode];
+  VectorX left = own.system->stiffness_times(x);
+  if (found.kind == case_data::ResponseKind::BucklingFactor) {
+    left += value *
+            own.system->geometric_times(own.actions.loads, own.displacement, x);
+  } else {
+    constexpr double kTurn = 2.0 * std::numbers::pi;
+    left -= std::pow(kTurn * value, 2) * own.system->mass_times(x);
+  }
+  const shell::RimPair pair{x, left, x, left};
+  shell::add_rim_gradient(rims, pair, work.by_nodes);
+  for (const shell::RigidRim& rim : rims) {
+    work.by_points.push_back(shell::by_rim_point(rim, pair));
+  }
+}
+
 /// A sum over modes that were found with the design.
 ResponsePartials shell_modal(const ResponseTask& task) {
   const ModalSum& sum = modal_sum(*task.fields.modes, task.response.name);
@@ -216,10 +245,10 @@ ResponsePartials shell_modal(const ResponseTask& task) {
   if (task.derivatives == element::Derivatives::All) {
     const FoundModes& found = task.fields.modes->problems[sum.problem];
     const modes::WeightedModes modes{found.values, found.shapes, sum.weights};
-    const auto springs = [&](const VectorX& x, Points& by_nodes) {
+    const auto held = [&](std::size_t mode, const VectorX& x,
+                          shell::ModeWork& work) {
       if (found.load_case != case_data::AnalysisEntry::kFree) {
-        shells::add_spring_gradient(
-            part, static_cast<std::size_t>(found.load_case), x, x, by_nodes);
+        add_held_work(part, found, mode, x, work);
       }
     };
     if (found.kind == case_data::ResponseKind::BucklingFactor) {
@@ -227,19 +256,23 @@ ResponsePartials shell_modal(const ResponseTask& task) {
           part.cases[static_cast<std::size_t>(found.load_case)];
       shell::ModeWork work =
           shell::factor_functional(part.mesh, part.sections, own.actions.loads,
-                                   own.displacement, modes, springs);
+                                   own.displacement, modes, held);
       VectorX by_displacement = std::move(work.by_displacement);
       shell::ActionGradient by_actions = std::move(work.by_actions);
+      Points by_points = std::move(work.by_points);
       result = shell_to_partials(part, std::move(work));
+      result.by_pin_point = std::move(by_points);
       result.cases.push_back({.load_case = found.load_case,
                               .by_displacement = std::move(by_displacement),
                               .by_forces = {},
                               .by_temperature = {},
                               .by_actions = std::move(by_actions)});
     } else {
-      result = shell_to_partials(
-          part, shell::frequency_functional(part.mesh, part.sections, modes,
-                                            springs));
+      shell::ModeWork work =
+          shell::frequency_functional(part.mesh, part.sections, modes, held);
+      Points by_points = std::move(work.by_points);
+      result = shell_to_partials(part, std::move(work));
+      result.by_pin_point = std::move(by_points);
     }
   }
   result.value = sum.value;

@@ -11,7 +11,7 @@
 #include "fea/element/local_axes.h"
 #include "fea/shell/shell_loads.h"
 #include "pipeline/results/calculix_export.h"
-#include "pipeline/shells/shell_model.h"
+#include "pipeline/shells/shell_holds.h"
 
 namespace meniscus::results {
 
@@ -74,13 +74,27 @@ shell_deck::DeckShellStep shell_step_of(const shells::ShellPart& part,
         load_case.name));
   }
   shell_deck::DeckShellStep step{.name = load_case.name};
-  const std::vector<shell::NodeSupport> supports =
+  const auto nodes = static_cast<int>(part.mesh.nodes.size());
+  const std::vector<shell::RigidRim> rims = shells::rigid_rims(part, load_case);
+  std::vector<shell::NodeSupport> supports =
       shells::node_supports(part, load_case);
+  const shell::ShellFreedom freedom(nodes, supports, rims);
+  // Rims hold their nodes by their points, which stand behind all nodes.
+  std::erase_if(supports, [&](const shell::NodeSupport& support) {
+    return freedom.seat(support.node) != support.node;
+  });
+  for (std::size_t r = 0; r < rims.size(); ++r) {
+    if (rims[r].held != std::array<bool, 6>{}) {
+      supports.push_back({.node = nodes + static_cast<int>(r),
+                          .held = rims[r].held,
+                          .axes = rims[r].axes,
+                          .value = rims[r].value});
+    }
+  }
   step.supports = supports_of(supports);
+  const auto all_nodes = nodes + static_cast<int>(rims.size());
   if (loads::enforces(load_case)) {
-    step.held_at =
-        shell::ShellFreedom(static_cast<int>(part.mesh.nodes.size()), supports)
-            .held_values();
+    step.held_at = shell::ShellFreedom(all_nodes, supports).held_values();
   }
   const shell::ShellLoads all = shells::shell_actions(part, load_case).loads;
   shell::ShellLoads others = all;  // than a deck has as such
@@ -89,7 +103,9 @@ shell_deck::DeckShellStep shell_step_of(const shells::ShellPart& part,
   others.spin.reset();
   others.temperature.reset();
   others.nodal_temperature.reset();
-  step.nodal_forces = shell::nodal_forces(part.mesh, part.sections, others);
+  step.nodal_forces = VectorX::Zero(6L * all_nodes);
+  step.nodal_forces.head(6L * nodes) =
+      shell::nodal_forces(part.mesh, part.sections, others);
   for (const shell::FacetPressure& p : all.pressures) {
     step.pressures.push_back({p.facet, p.pressure});
   }
@@ -98,12 +114,45 @@ shell_deck::DeckShellStep shell_step_of(const shells::ShellPart& part,
     step.temperature_change = all.temperature->mean;
   }
   if (all.nodal_temperature) {
-    step.nodal_temperatures = all.nodal_temperature->value;
+    step.nodal_temperatures = VectorX::Zero(all_nodes);
+    step.nodal_temperatures.head(nodes) = all.nodal_temperature->value;
   }
   if (all.spin) {
     step.spin = io::DeckSpin{all.spin->point, all.spin->axis, all.spin->rate};
   }
   return step;
+}
+
+/// A deck has the same ones in all steps.
+void add_rigid_bodies(const case_data::EvaluatedCase& inputs,
+                      const shells::ShellPart& part,
+                      shell_deck::ShellDeck& deck) {
+  if (inputs.load_cases.empty()) {
+    return;
+  }
+  const auto of = [&](const loads::LoadCase& load_case) {
+    return shells::rigid_rims(part, load_case);
+  };
+  const loads::LoadCase& first = inputs.load_cases.front();
+  const std::vector<shell::RigidRim> rims = of(first);
+  for (const loads::LoadCase& other : inputs.load_cases) {
+    const std::vector<shell::RigidRim> own = of(other);
+    if (!std::equal(rims.begin(), rims.end(), own.begin(), own.end(),
+                    [](const shell::RigidRim& a, const shell::RigidRim& b) {
+                      return a.nodes == b.nodes && a.point == b.point;
+                    })) {
+      throw InvalidInput(fmt::format(
+          "load cases '{}' and '{}' have other rigid supports or loads; a deck "
+          "has the same, about the same points, in all: export a case with one "
+          "of them",
+          first.name, other.name));
+    }
+  }
+  for (const shell::RigidRim& rim : rims) {
+    deck.rigid.push_back(
+        {rim.name, static_cast<int>(deck.nodes.size()), rim.nodes});
+    deck.nodes.push_back(rim.point);
+  }
 }
 
 shell_deck::DeckShellSection section_of(const std::string& name,
@@ -140,6 +189,7 @@ shell_deck::ShellDeck shell_deck_of(const case_data::Case& input,
   for (std::size_t s = 0; s < input.shells.size(); ++s) {
     deck.sections.push_back(section_of(input.shells[s].name, part.sections[s]));
   }
+  add_rigid_bodies(inputs, part, deck);
   // Of a load from any direction, which shells refuse, there are more.
   for (std::size_t k = 0; k < input.load_cases.size(); ++k) {
     deck.steps.push_back(shell_step_of(part, inputs.load_cases[k]));

@@ -108,8 +108,10 @@ class JointChecks {
   void check_supports(const case_data::LoadCaseEntry& load_case) {
     for (const case_data::SupportEntry& support : load_case.supports) {
       const std::string where = fmt::format("load case '{}': ", load_case.name);
-      if (support.displacement || support.support.displacement) {
-        refuse(support.line, where + "an enforced displacement",
+      if (support.displacement || support.rotation) {
+        refuse(support.line,
+               where + (support.displacement ? "an enforced displacement"
+                                             : "an enforced rotation"),
                "hold it at 0, and load it");
       } else if (!is_on_shells(input_, support.support.surface) &&
                  (support.at ||

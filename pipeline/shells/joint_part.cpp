@@ -9,6 +9,7 @@
 #include "fea/elastic/elastic_gradient.h"
 #include "fea/loads/load_rates.h"
 #include "fea/loads/loads.h"
+#include "pipeline/shells/shell_holds.h"
 #include "pipeline/shells/shell_model.h"
 
 namespace meniscus::shells {

@@ -125,9 +125,6 @@ class ShellChecks {
             [](const loads::SpringBed& bed) { return is_rim(bed.surface); })) {
       refuse(load_case.line, "springs on a rim");
     }
-    if (!load_case.pins.empty()) {
-      refuse(load_case.pins.front().line, "a rigid support");
-    }
   }
 
   void check_load(const case_data::LoadCaseEntry& load_case,
@@ -149,8 +146,9 @@ class ShellChecks {
     if (load.size) {
       return refuse("a load from any direction", "give load cases of forces");
     }
-    if (load.by != case_data::LoadPath::Spread) {
-      return refuse("a rigid or bearing load", "spread it (take `by` out)");
+    if (load.by == case_data::LoadPath::Bearing) {
+      return refuse("a bearing load",
+                    "spread it (take `by` out), or make it \"rigid\"");
     }
     switch (load.kind) {
       case case_data::LoadKind::Force:

@@ -12,6 +12,7 @@
 #include "core/timer.h"
 #include "evolve/walls/rim_shape.h"
 #include "evolve/walls/wall_films.h"
+#include "pipeline/shells/shell_holds.h"
 
 namespace meniscus::shells {
 
@@ -267,100 +268,6 @@ std::vector<VectorX> ShellModel::to_numbers(
 
 namespace {
 
-/// Of those that are corners. By their frozen places, so that a design does not
-/// choose another.
-int nearest(const Points& corners, const std::set<int>& nodes, const Vec3& at) {
-  int best = *nodes.begin();
-  for (const int node : nodes) {
-    if (node < std::ssize(corners) &&
-        (corners[node] - at).norm() < (corners[best] - at).norm()) {
-      best = node;
-    }
-  }
-  return best;
-}
-
-/// An image in the plane moves and turns like the node: along the plane, about
-/// its normal. Planes across x, y or z have no axes of their own, so that rims
-/// may end in them.
-shell::NodeSupport in_plane(const Vec3& normal) {
-  shell::NodeSupport support;
-  Eigen::Index across = 0;
-  if (normal.cwiseAbs().maxCoeff(&across) < 1.0) {
-    across = 0;
-    support.axes = element::LocalAxes{normal, normal.unitOrthogonal()};
-  }
-  for (int k = 0; k < 3; ++k) {
-    support.held[k] = k == across;
-    support.held[3 + k] = k != across;
-  }
-  return support;
-}
-
-}  // namespace
-
-std::vector<shell::NodeSupport> node_supports(
-    const ShellPart& part, const loads::LoadCase& load_case) {
-  std::vector<shell::NodeSupport> supports;
-  for (const loads::Support& support : load_case.supports) {
-    std::set<int> nodes;
-    if (part.rims.contains(support.surface) || is_rim(support.surface)) {
-      for (const std::array<int, 3>& edge : rim_of(part, support.surface)) {
-        nodes.insert(edge.begin(), edge.end());
-      }
-    } else {
-      const int label = part.skin.label_of(film_of(support.surface));
-      for (int f = 0; f < part.skin.face_count(); ++f) {
-        if (part.skin.face_label[f] == label) {
-          nodes.insert(part.skin.face(f).begin(), part.skin.face(f).end());
-        }
-      }
-    }
-    if (support.at) {
-      nodes = {nearest(part.frozen, nodes, *support.at)};
-    }
-    const auto& turn = support.fix_rotation;
-    shell::NodeSupport held = {
-        .held = {support.fix_x, support.fix_y, support.fix_z, turn[0], turn[1],
-                 turn[2]},
-        .axes = support.axes};
-    held.value.head<3>() = loads::value_of(support.displacement);
-    if (support.kind == loads::SupportKind::Symmetry) {
-      held = in_plane(part.planes.at(support.surface));
-    }
-    for (const int node : nodes) {
-      held.node = node;
-      supports.push_back(held);
-    }
-  }
-  return supports;
-}
-
-double held_rate(const ShellPart& part, const loads::LoadCase& load_case,
-                 const loads::LoadCase& rates,
-                 const VectorX& adjoint_reactions) {
-  loads::LoadCase moved{.name = load_case.name};
-  moved.supports = load_case.supports;
-  for (std::size_t k = 0; k < moved.supports.size(); ++k) {
-    moved.supports[k].displacement = rates.supports[k].displacement;
-  }
-  const shell::ShellFreedom freedom(static_cast<int>(part.mesh.nodes.size()),
-                                    node_supports(part, moved));
-  return -adjoint_reactions.dot(freedom.held_values());
-}
-
-namespace {
-
-std::vector<shell::GroundSpring> ground_springs(
-    const supports::SpringBlocks& blocks) {
-  std::vector<shell::GroundSpring> springs;
-  springs.reserve(blocks.at.size());
-  for (std::size_t k = 0; k < blocks.at.size(); ++k) {
-    springs.push_back({blocks.at[k][0], blocks.at[k][1], blocks.block[k]});
-  }
-  return springs;
-}
-
 /// That of an earlier load case that is held alike, or a new one.
 std::shared_ptr<const shell::ShellSystem> system_of(
     const case_data::EvaluatedCase& inputs, std::size_t load_case,
@@ -368,13 +275,15 @@ std::shared_ptr<const shell::ShellSystem> system_of(
   const loads::LoadCase& own = inputs.load_cases[load_case];
   for (std::size_t k = 0; k < load_case; ++k) {
     if (inputs.load_cases[k].supports == own.supports &&
-        inputs.load_cases[k].springs == own.springs) {
+        inputs.load_cases[k].springs == own.springs &&
+        inputs.load_cases[k].pins == own.pins) {
       return part.cases[k].system;
     }
   }
   return std::make_shared<shell::ShellSystem>(
       part.mesh, part.sections, node_supports(part, own), shell::facet_rule(),
-      shell::ShellFactorOptions{}, ground_springs(spring_blocks(part, own)));
+      shell::ShellFactorOptions{}, ground_springs(part, own),
+      rigid_rims(part, own));
 }
 
 /// |reactions + loads| over the sum of |loads|, nodal forces all of them.

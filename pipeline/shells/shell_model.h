@@ -11,7 +11,6 @@
 #include "core/geometry/surface_nodes.h"
 #include "evolve/frozen/film_model.h"
 #include "fea/elastic/elasticity.h"
-#include "fea/shell/shell_supports.h"
 #include "pipeline/case_data/case.h"
 #include "pipeline/shells/shell_part.h"
 
@@ -55,22 +54,12 @@ class ShellModel {
   std::map<std::string, Vec3> planes_;           // the same
 };
 
-/// What holds the nodes of the part. Throws InvalidInput for a rim of no edge.
-std::vector<shell::NodeSupport> node_supports(const ShellPart& part,
-                                              const loads::LoadCase& load_case);
-
 /// `solve(k)` of each load case, adding to the solution; what cannot be solved
 /// is its failure.
 equations::ElasticSolution solve_load_cases(
     const case_data::EvaluatedCase& inputs, ShellPart& part,
     const std::function<void(std::size_t load_case,
                              equations::ElasticSolution& solution)>& solve);
-
-/// What enforced displacements that change at `rates` change a
-/// functional J by, K v - dJ/du the reactions to its adjoint v (6 per node).
-double held_rate(const ShellPart& part, const loads::LoadCase& load_case,
-                 const loads::LoadCase& rates,
-                 const VectorX& adjoint_reactions);
 
 /// Solves all load cases, those held alike with one factor. A shell that can
 /// move is a failure.

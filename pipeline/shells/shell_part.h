@@ -13,10 +13,10 @@
 #include "fea/joint/joint_system.h"
 #include "fea/loads/load_case.h"
 #include "fea/shell/shell_gradient.h"
-#include "fea/shell/shell_lines.h"
 #include "fea/shell/shell_stress.h"
 #include "fea/shell/shell_system.h"
 #include "fea/shell_actions/line_load.h"
+#include "fea/shell_actions/shell_lines.h"
 #include "fea/stress/patch_recovery.h"
 #include "fea/supports/springs.h"
 

@@ -7,7 +7,7 @@ import re
 # Cards that the decks of this program may have, and no others.
 KNOWN = {"PARAM", "GRDSET", "GRID", "CTETRA", "PSOLID", "MAT1", "SPC1", "SPC", "LOAD",
          "FORCE", "MOMENT", "PLOAD4", "GRAV", "RFORCE", "TEMP", "TEMPD",
-         "SPOINT", "CELAS2", "MPC", "MAT9", "CORD2R", "CTRIA6", "PSHELL"}
+         "SPOINT", "CELAS2", "MPC", "MAT9", "CORD2R", "CTRIA6", "PSHELL", "RBE2"}
 # CalculiX's order of the 21 constants of an anisotropic material: pairs of
 # stresses as Nastran counts them (11 22 33 12 23 31).
 ANISO = [(0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2), (0, 3), (1, 3), (2, 3),
@@ -53,7 +53,7 @@ class Deck:
         self.pressures = collections.defaultdict(list)
         self.gravity, self.spin = {}, {}
         self.axes, self.springs, self.equations = {}, [], []
-        self.scalars = []
+        self.scalars, self.rigid = [], []
         self.shells, self.shell_properties, self.frames = {}, {}, {}
         self.heat = collections.defaultdict(dict)
 
@@ -111,6 +111,10 @@ def read(text):
                                          for x in [*f[1:], *[""] * 8]]
         elif name == "CORD2R":
             deck.axes[int(f[0])] = [real(x) for x in f[2:11]]
+        elif name == "RBE2":
+            if f[2] != "123456":
+                raise ValueError("a part of a rigid body")
+            deck.rigid.append((int(f[1]), [int(n) for n in f[3:] if n]))
         elif name == "SPOINT":
             points = [int(n) for n in f if n]
             deck.scalars += points

@@ -908,7 +908,7 @@ constraints = [{ response = "stable", min = 1.5 }]
              "a support along normals"),
             ('fix = "xyz" }', 'stiffness = [1, 1, 1] }', "springs on a rim"),
             ('force = [1000, 0, "ring * 10"]',
-             'by = "rigid", force = [1000, 0, 0]', "a rigid or bearing load"),
+             'by = "bearing", force = [1000, 0, 0]', "a bearing load"),
             ('"skin/rim:high", rim_tension = "20 * inside"',
              '"skin", rim_tension = "20 * inside"',
              "a rim_tension on what is no rim"),

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
-#include "pipeline/shells/shell_model.h"
+#include "pipeline/shells/shell_holds.h"
 #include "tests/support/derivatives.h"
 #include "tests/support/shell_shapes.h"
 

@@ -1,4 +1,4 @@
-#include "fea/shell/shell_lines.h"
+#include "fea/shell_actions/shell_lines.h"
 
 #include <fmt/format.h>
 
