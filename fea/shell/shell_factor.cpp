@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <mutex>
+#include <omp.h>
 #include <utility>
 
 #include <fmt/format.h>
@@ -16,8 +17,8 @@ namespace meniscus::shell {
 
 namespace {
 
-/// Substructures that are condensed before their wholes are.
-constexpr int kLeavesAtOnce = 4;
+/// Substructures that are condensed before their wholes are, one a thread.
+int leaves_at_once() { return std::max(4, omp_get_max_threads()); }
 constexpr double kDenseShare = 0.25;  // ShellFactorOptions::kept_bytes
 
 int levels_for(int unknowns, const ShellFactorOptions& options) {
@@ -54,27 +55,62 @@ struct ShellFactor::Front {
   StoredMatrix L;  // rows: own, boundary; columns: own
 };
 
+/// Right sides on their way to solutions.
+struct ShellFactor::Columns {
+  Columns(const Eigen::MatrixXd& right_sides, int leaves)
+      : right(right_sides), x(right_sides), passed(leaves) {}
+
+  const Eigen::MatrixXd& right;
+  Eigen::MatrixXd x;
+  std::vector<Eigen::MatrixXd> passed;  // by leaves to their boundaries
+};
+
+namespace {
+
+Eigen::MatrixXd rows_of(const Eigen::MatrixXd& all, const std::vector<int>& own,
+                        const std::vector<int>& boundary) {
+  Eigen::MatrixXd b(own.size() + boundary.size(), all.cols());
+  b << all(own, Eigen::all), all(boundary, Eigen::all);
+  return b;
+}
+
+}  // namespace
+
 ShellFactor::ShellFactor(const ShellMesh& mesh, const ShellFreedom& freedom,
                          MatrixOfFacet matrix,
-                         const ShellFactorOptions& options)
+                         const ShellFactorOptions& options,
+                         Eigen::MatrixXd* right)
     : mesh_(mesh),
       freedom_(freedom),
       matrix_(std::move(matrix)),
       cut_(cut_shell(mesh, levels_for(freedom.unknowns(), options))),
+      monitor_(options.monitor == nullptr ? silent_monitor()
+                                          : *options.monitor),
       kept_bytes_(options.kept_bytes < 0.0 ? 0.5 * available_memory()
                                            : options.kept_bytes),
       kept_(cut_.leaf_count()),
       fronts_(cut_.parts.size()),
       schur_(cut_.parts.size()) {
-  for (int first = 0; first < cut_.leaf_count(); first += kLeavesAtOnce) {
-    const int count = std::min(kLeavesAtOnce, cut_.leaf_count() - first);
-    condense_leaves(first, count);
+  std::optional<Columns> columns;
+  if (right != nullptr) {
+    check_rows(*right);
+    columns.emplace(*right, cut_.leaf_count());
+  }
+  const int leaves = cut_.leaf_count();
+  const int batch = leaves_at_once();
+  for (int first = 0; first < leaves; first += batch) {
+    for_leaves(
+        first, std::min(first + batch, leaves), "condensed",
+        [&](int leaf) { condense_leaf(leaf, columns ? &*columns : nullptr); });
     // Wholes of which both halves are there, from below.
-    for (int whole = cut_.leaf_count() - 1; whole > 0; --whole) {
+    for (int whole = leaves - 1; whole > 0; --whole) {
       if (schur_[2 * whole] && schur_[2 * whole + 1]) {
         condense_halves(whole);
       }
     }
+  }
+  if (columns) {
+    *right = solve_cuts(*columns);
   }
 }
 
@@ -139,24 +175,41 @@ const ShellFactor::Leaf& ShellFactor::leaf_of(
   return *made;
 }
 
-void ShellFactor::condense_leaves(int first, int count) {
-  std::vector<std::unique_ptr<Leaf>> leaves(count);
-  const double each = kept_bytes_ / cut_.leaf_count();
-  parallel_for(count, [&](std::ptrdiff_t k) {
-    const int leaf = first + static_cast<int>(k);
-    auto own = std::make_unique<Leaf>(factored(leaf));
-    const auto outside = static_cast<int>(own->boundary.size());
+template <class Each>
+void ShellFactor::for_leaves(int first, int end, const char* work,
+                             const Each& each) const {
+  const int batch = leaves_at_once();
+  for (int begin = first; begin < end; begin += batch) {
+    const int count = std::min(batch, end - begin);
     if (cut_.levels > 0) {
-      Eigen::MatrixXd S = own->factor.schur_complement(outside);
-      S.diagonal() -= own->raised;
-      schur_[cut_.part_of(leaf)].emplace(stored(std::move(S)));
+      throw_if_stopped(monitor_, "fea");
+      monitor_.progress(
+          {.stage = "fea",
+           .detail = fmt::format("substructures {}: {} of {}", work, begin,
+                                 cut_.leaf_count()),
+           .fraction = static_cast<double>(begin) / cut_.leaf_count()});
     }
-    constexpr double kNumber = sizeof(double);
-    if (cut_.levels == 0 ||
-        kNumber * static_cast<double>(own->factor.entries()) < each) {
-      kept_[leaf] = std::move(own);
-    }
-  });
+    parallel_for(count,
+                 [&](std::ptrdiff_t k) { each(begin + static_cast<int>(k)); });
+  }
+}
+
+void ShellFactor::condense_leaf(int leaf, Columns* columns) {
+  auto own = std::make_unique<Leaf>(factored(leaf));
+  const auto outside = static_cast<int>(own->boundary.size());
+  if (cut_.levels > 0) {
+    Eigen::MatrixXd S = own->factor.schur_complement(outside);
+    S.diagonal() -= own->raised;
+    schur_[cut_.part_of(leaf)].emplace(stored(std::move(S)));
+  }
+  if (columns != nullptr) {
+    eliminate(leaf, *own, *columns);
+  }
+  const double bytes =
+      sizeof(double) * static_cast<double>(own->factor.entries());
+  if (cut_.levels == 0 || bytes < kept_bytes_ / cut_.leaf_count()) {
+    kept_[leaf] = std::move(own);
+  }
 }
 
 StoredMatrix ShellFactor::stored(Eigen::MatrixXd matrix) {
@@ -206,42 +259,52 @@ void ShellFactor::condense_halves(int part) {
   schur_[part].emplace(stored(std::move(rest)));
 }
 
-Eigen::MatrixXd ShellFactor::solve(const Eigen::MatrixXd& right) const {
+void ShellFactor::check_rows(const Eigen::MatrixXd& right) const {
   if (right.rows() != freedom_.unknowns()) {
     throw SolverError(
         fmt::format("solve: right side has {} rows, the shell {} unknowns",
                     right.rows(), freedom_.unknowns()));
   }
-  if (cut_.levels == 0) {
-    return kept_.front()->factor.solve(right);
-  }
-  const auto rows = [](const Eigen::MatrixXd& all, const std::vector<int>& own,
-                       const std::vector<int>& boundary) {
-    Eigen::MatrixXd b(own.size() + boundary.size(), all.cols());
-    b << all(own, Eigen::all), all(boundary, Eigen::all);
-    return b;
-  };
-  const int leaves = cut_.leaf_count();
-  Eigen::MatrixXd x = right;
-  std::vector<Eigen::MatrixXd> passed(leaves);
-  parallel_for(leaves, [&](std::ptrdiff_t k) {
+}
+
+/// A leaf's unknowns as if its boundary were held, and what that leaves there.
+void ShellFactor::eliminate(int leaf, const Leaf& own, Columns& columns) const {
+  const auto outside = static_cast<int>(own.boundary.size());
+  const Eigen::MatrixXd z =
+      cut_.levels == 0
+          ? own.factor.solve(columns.right)
+          : own.factor
+                .solve_leading(rows_of(columns.right, own.own, own.boundary),
+                               outside)
+                .topRows(own.own.size());
+  columns.passed[leaf] = own.coupling * z;
+  columns.x(own.own, Eigen::all) = z;  // each its own rows
+}
+
+Eigen::MatrixXd ShellFactor::solve(const Eigen::MatrixXd& right) const {
+  check_rows(right);
+  Columns columns(right, cut_.leaf_count());
+  for_leaves(0, cut_.leaf_count(), "solved", [&](int leaf) {
     std::unique_ptr<Leaf> made;
-    const Leaf& leaf = leaf_of(static_cast<int>(k), made);
-    const Eigen::MatrixXd z =
-        leaf.factor
-            .solve_leading(rows(right, leaf.own, leaf.boundary),
-                           static_cast<int>(leaf.boundary.size()))
-            .topRows(leaf.own.size());
-    passed[k] = leaf.coupling * z;
-    x(leaf.own, Eigen::all) = z;  // each its own rows
+    eliminate(leaf, leaf_of(leaf, made), columns);
   });
+  return solve_cuts(columns);
+}
+
+/// The cuts' unknowns of what leaves left there, then the leaves' own.
+Eigen::MatrixXd ShellFactor::solve_cuts(Columns& columns) const {
+  Eigen::MatrixXd& x = columns.x;
+  if (cut_.levels == 0) {
+    return std::move(x);
+  }
+  const int leaves = cut_.leaf_count();
   for (int k = 0; k < leaves; ++k) {
     x(unknowns_of(cut_.parts[cut_.part_of(k)].boundary), Eigen::all) -=
-        passed[k];
+        columns.passed[k];
   }
   for (int part = leaves - 1; part > 0; --part) {
     const Front& front = *fronts_[part];
-    Eigen::MatrixXd b = rows(x, front.own, front.boundary);
+    Eigen::MatrixXd b = rows_of(x, front.own, front.boundary);
     Eigen::MatrixXd read;
     solve_leading_lower(front.L.get(read), b);
     x(front.own, Eigen::all) = b.topRows(front.own.size());
@@ -249,14 +312,14 @@ Eigen::MatrixXd ShellFactor::solve(const Eigen::MatrixXd& right) const {
   }
   for (int part = 1; part < leaves; ++part) {
     const Front& front = *fronts_[part];
-    Eigen::MatrixXd b = rows(x, front.own, front.boundary);
+    Eigen::MatrixXd b = rows_of(x, front.own, front.boundary);
     Eigen::MatrixXd read;
     solve_leading_upper(front.L.get(read), b);
     x(front.own, Eigen::all) = b.topRows(front.own.size());
   }
-  parallel_for(leaves, [&](std::ptrdiff_t k) {
+  for_leaves(0, leaves, "solved back", [&](int k) {
     std::unique_ptr<Leaf> made;
-    const Leaf& leaf = leaf_of(static_cast<int>(k), made);
+    const Leaf& leaf = leaf_of(k, made);
     Eigen::MatrixXd b =
         Eigen::MatrixXd::Zero(leaf.own.size() + leaf.boundary.size(), x.cols());
     b.topRows(leaf.own.size()) =
@@ -265,7 +328,7 @@ Eigen::MatrixXd ShellFactor::solve(const Eigen::MatrixXd& right) const {
         leaf.factor.solve_leading(b, static_cast<int>(leaf.boundary.size()))
             .topRows(leaf.own.size());
   });
-  return x;
+  return std::move(x);
 }
 
 }  // namespace meniscus::shell

@@ -14,6 +14,7 @@
 
 #include "core/math/linear_solve.h"
 #include "core/math/spilled_matrix.h"
+#include "core/monitor.h"
 #include "fea/shell/shell_assembly.h"
 #include "fea/shell/substructures.h"
 
@@ -29,26 +30,39 @@ struct ShellFactorOptions {
   /// others of which go to the disk [byte]; below 0: half of what the machine
   /// has left. The results do not depend on it.
   double kept_bytes = -1.0;
+  /// Told how far it is, and asked whether to stop, where there are
+  /// substructures; not owned, null for none.
+  Monitor* monitor = nullptr;
 };
 
 class ShellFactor {
  public:
-  /// Keeps references, and `matrix`, of one facet, symmetric. Throws
+  /// Keeps references, `matrix`, of one facet, symmetric, and the monitor.
+  /// `right`: columns of free unknowns that become their solution on the way,
+  /// for which substructures are made once less; may be null. Throws
   /// SolverError where the sum is not positive definite, or memory runs out,
-  /// IoError where the disk does.
+  /// IoError where the disk does, Interrupted.
   ShellFactor(const ShellMesh& mesh, const ShellFreedom& freedom,
-              MatrixOfFacet matrix, const ShellFactorOptions& options = {});
+              MatrixOfFacet matrix, const ShellFactorOptions& options = {},
+              Eigen::MatrixXd* right = nullptr);
   ~ShellFactor();
 
-  /// One or several columns of free unknowns.
+  /// One or several columns of free unknowns. Throws IoError, Interrupted.
   Eigen::MatrixXd solve(const Eigen::MatrixXd& right) const;
 
  private:
   struct Leaf;
   struct Front;
+  struct Columns;
   Leaf factored(int leaf) const;
   const Leaf& leaf_of(int leaf, std::unique_ptr<Leaf>& made) const;
-  void condense_leaves(int first, int count);
+  void condense_leaf(int leaf, Columns* columns);
+  void check_rows(const Eigen::MatrixXd& right) const;
+  void eliminate(int leaf, const Leaf& own, Columns& columns) const;
+  Eigen::MatrixXd solve_cuts(Columns& columns) const;
+  /// Of those from `first` to below `end`, in threads.
+  template <class Each>
+  void for_leaves(int first, int end, const char* work, const Each& each) const;
   void condense_halves(int part);
   StoredMatrix stored(Eigen::MatrixXd matrix);
   std::vector<int> unknowns_of(const std::vector<int>& nodes) const;
@@ -57,6 +71,7 @@ class ShellFactor {
   const ShellFreedom& freedom_;
   MatrixOfFacet matrix_;
   Substructures cut_;
+  Monitor& monitor_;
   double kept_bytes_ = 0.0;
   std::vector<std::unique_ptr<Leaf>> kept_;
   std::vector<std::unique_ptr<Front>> fronts_;  // by part

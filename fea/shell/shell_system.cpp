@@ -1,5 +1,6 @@
 #include "fea/shell/shell_system.h"
 
+#include <cstddef>
 #include <utility>
 
 #include "core/error.h"
@@ -9,13 +10,11 @@
 
 namespace meniscus::shell {
 
-ShellSystem::ShellSystem(const ShellMesh& mesh,
-                         const std::vector<Section>& sections,
-                         const std::vector<NodeSupport>& supports,
-                         const FacetRule& rule,
-                         const ShellFactorOptions& options,
-                         const std::vector<GroundSpring>& springs,
-                         const std::vector<RigidRim>& rims)
+ShellSystem::ShellSystem(
+    const ShellMesh& mesh, const std::vector<Section>& sections,
+    const std::vector<NodeSupport>& supports, const FacetRule& rule,
+    const ShellFactorOptions& options, const std::vector<GroundSpring>& springs,
+    const std::vector<RigidRim>& rims, const std::vector<ShellLoads>& loads)
     : mesh_(mesh),
       sections_(sections),
       rule_(rule),
@@ -29,9 +28,19 @@ ShellSystem::ShellSystem(const ShellMesh& mesh,
         "supports and rigid rims leave no node of the shell free to move; hold "
         "less of it");
   }
+  Eigen::MatrixXd columns(freedom_.unknowns(), loads.size());
+  std::vector<VectorX> forces;
+  for (std::size_t k = 0; k < loads.size(); ++k) {
+    forces.push_back(nodal_forces(mesh_, sections_, loads[k]));
+    columns.col(static_cast<Eigen::Index>(k)) = right_side(forces.back());
+  }
   factor_.emplace(seats_, freedom_,
                   seated([this](int facet) { return stiffness_.of(facet); }),
-                  options);
+                  options, loads.empty() ? nullptr : &columns);
+  for (std::size_t k = 0; k < loads.size(); ++k) {
+    solutions_.push_back(
+        solution(forces[k], columns.col(static_cast<Eigen::Index>(k))));
+  }
 }
 
 /// By the numbers of seats.
@@ -49,20 +58,26 @@ SparseMatrix ShellSystem::stiffness() const {
       seated([this](int facet) { return stiffness_.of(facet); }));
 }
 
-ShellSolution ShellSystem::solve(const ShellLoads& loads) const {
-  const VectorX f = nodal_forces(mesh_, sections_, loads);
-  VectorX right = f;
+/// On the unknowns, less what is held elsewhere than at 0.
+VectorX ShellSystem::right_side(const VectorX& forces) const {
   const VectorX held = freedom_.held_values();
-  if (!held.isZero(0.0)) {
-    right -= stiffness_.times(held);
-  }
+  return freedom_.restrict(
+      held.isZero(0.0) ? forces : VectorX(forces - stiffness_.times(held)));
+}
+
+ShellSolution ShellSystem::solution(const VectorX& forces,
+                                    const VectorX& x) const {
   ShellSolution solution;
-  solution.displacement =
-      freedom_.expand(factor_->solve(freedom_.restrict(right)));
+  solution.displacement = freedom_.expand(x);
   const VectorX inner = stiffness_.times(solution.displacement);
-  solution.reaction = inner - f;
+  solution.reaction = inner - forces;
   solution.strain_energy = 0.5 * solution.displacement.dot(inner);
   return solution;
+}
+
+ShellSolution ShellSystem::solve(const ShellLoads& loads) const {
+  const VectorX forces = nodal_forces(mesh_, sections_, loads);
+  return solution(forces, factor_->solve(right_side(forces)));
 }
 
 VectorX ShellSystem::solve_forces(const VectorX& forces) const {

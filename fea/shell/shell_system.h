@@ -37,7 +37,12 @@ class ShellSystem {
               const FacetRule& rule = facet_rule(),
               const ShellFactorOptions& options = {},
               const std::vector<GroundSpring>& springs = {},
-              const std::vector<RigidRim>& rims = {});
+              const std::vector<RigidRim>& rims = {},
+              const std::vector<ShellLoads>& loads = {});
+
+  /// Of the loads that it was made with: all at once and with the factor, for
+  /// less than solve() takes where the shell is large.
+  const std::vector<ShellSolution>& solutions() const { return solutions_; }
 
   ShellSolution solve(const ShellLoads& loads) const;
 
@@ -74,6 +79,8 @@ class ShellSystem {
                              const std::vector<FacetLoad>& own,
                              const VectorX& displacement) const;
   MatrixOfFacet seated(MatrixOfFacet matrix) const;
+  VectorX right_side(const VectorX& forces) const;
+  ShellSolution solution(const VectorX& forces, const VectorX& x) const;
 
   const ShellMesh& mesh_;
   const std::vector<Section>& sections_;
@@ -83,6 +90,7 @@ class ShellSystem {
   ShellMesh seats_;  // the mesh on them
   ShellAssembly assembly_;
   std::optional<ShellFactor> factor_;
+  std::vector<ShellSolution> solutions_;
 };
 
 }  // namespace meniscus::shell

@@ -138,8 +138,9 @@ equations::ElasticSolution solve_part(const FrozenPart& part,
                                       StagedDesign& staged) {
   const case_data::EvaluatedCase& inputs = staged.fields.inputs;
   if (part.shells) {
-    return (part.tie ? shells::solve_joint : shells::solve_shell)(
-        inputs, *staged.fields.shell);
+    shells::ShellPart& shell = *staged.fields.shell;
+    return part.tie ? shells::solve_joint(inputs, shell)
+                    : shells::solve_shell(inputs, shell, part.monitor);
   }
   return part.elasticity->solve(
       staged.fields.mesh, inputs.load_cases, inputs.materials,

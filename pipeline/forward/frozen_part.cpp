@@ -224,7 +224,7 @@ void freeze_shell_modes(const case_data::EvaluatedCase& inputs,
   const std::shared_ptr<shells::ShellPart> shell =
       part.shell_part(inputs, part.film->reference().points, {});
   const equations::ElasticSolution solution =
-      shells::solve_shell(inputs, *shell);
+      shells::solve_shell(inputs, *shell, &monitor);
   part.start.failure = solution.failure;
   if (!part.start.failure) {
     part.base_modes = responses::find_response_modes({.input = part.input,

@@ -268,22 +268,24 @@ std::vector<VectorX> ShellModel::to_numbers(
 
 namespace {
 
-/// That of an earlier load case that is held alike, or a new one.
+bool are_held_alike(const loads::LoadCase& a, const loads::LoadCase& b) {
+  return a.supports == b.supports && a.springs == b.springs && a.pins == b.pins;
+}
+
+/// Of all load cases that are held as this one.
 std::shared_ptr<const shell::ShellSystem> system_of(
-    const case_data::EvaluatedCase& inputs, std::size_t load_case,
-    const ShellPart& part) {
-  const loads::LoadCase& own = inputs.load_cases[load_case];
-  for (std::size_t k = 0; k < load_case; ++k) {
-    if (inputs.load_cases[k].supports == own.supports &&
-        inputs.load_cases[k].springs == own.springs &&
-        inputs.load_cases[k].pins == own.pins) {
-      return part.cases[k].system;
+    const case_data::EvaluatedCase& inputs, const loads::LoadCase& own,
+    const ShellPart& part, Monitor* monitor) {
+  std::vector<shell::ShellLoads> loads;
+  for (std::size_t k = 0; k < inputs.load_cases.size(); ++k) {
+    if (are_held_alike(own, inputs.load_cases[k])) {
+      loads.push_back(part.cases[k].actions.loads);
     }
   }
   return std::make_shared<shell::ShellSystem>(
       part.mesh, part.sections, node_supports(part, own), shell::facet_rule(),
-      shell::ShellFactorOptions{}, ground_springs(part, own),
-      rigid_rims(part, own));
+      shell::ShellFactorOptions{.monitor = monitor}, ground_springs(part, own),
+      rigid_rims(part, own), loads);
 }
 
 /// |reactions + loads| over the sum of |loads|, nodal forces all of them.
@@ -297,12 +299,11 @@ double imbalance(const VectorX& forces, const VectorX& reactions) {
   return all > 0.0 ? left.norm() / all : 0.0;
 }
 
-void solve_case(const loads::LoadCase& load_case, ShellPart& part,
-                ShellCase& own, equations::ElasticSolution& solution) {
+void add_case(const loads::LoadCase& load_case,
+              const shell::ShellSolution& found, ShellPart& part,
+              ShellCase& own, equations::ElasticSolution& solution) {
   equations::ElasticReport& report = solution.report;
   const Timer timer;
-  own.actions = shell_actions(part, load_case);
-  const shell::ShellSolution found = own.system->solve(own.actions.loads);
   own.displacement = found.displacement;
   own.reaction = found.reaction;
   const VectorX forces =
@@ -359,13 +360,32 @@ equations::ElasticSolution solve_load_cases(
 }
 
 equations::ElasticSolution solve_shell(const case_data::EvaluatedCase& inputs,
-                                       ShellPart& part) {
+                                       ShellPart& part, Monitor* monitor) {
+  const std::vector<loads::LoadCase>& all = inputs.load_cases;
+  const equations::ElasticSolution loaded = solve_load_cases(
+      inputs, part, [&](std::size_t k, equations::ElasticSolution&) {
+        part.cases[k].actions = shell_actions(part, all[k]);
+      });
+  if (loaded.failure) {
+    return loaded;
+  }
   return solve_load_cases(
       inputs, part, [&](std::size_t k, equations::ElasticSolution& solution) {
         const Timer setup;
-        part.cases[k].system = system_of(inputs, k, part);
+        // The earlier ones that its system serves.
+        std::size_t before = 0;
+        for (std::size_t j = 0; j < k; ++j) {
+          if (are_held_alike(all[j], all[k])) {
+            part.cases[k].system = part.cases[j].system;
+            ++before;
+          }
+        }
+        if (before == 0) {
+          part.cases[k].system = system_of(inputs, all[k], part, monitor);
+        }
         solution.report.setup_seconds += setup.seconds();
-        solve_case(inputs.load_cases[k], part, part.cases[k], solution);
+        add_case(all[k], part.cases[k].system->solutions()[before], part,
+                 part.cases[k], solution);
       });
 }
 

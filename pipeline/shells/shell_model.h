@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/geometry/surface_nodes.h"
+#include "core/monitor.h"
 #include "evolve/frozen/film_model.h"
 #include "fea/elastic/elasticity.h"
 #include "pipeline/case_data/case.h"
@@ -62,8 +63,9 @@ equations::ElasticSolution solve_load_cases(
                              equations::ElasticSolution& solution)>& solve);
 
 /// Solves all load cases, those held alike with one factor. A shell that can
-/// move is a failure.
+/// move is a failure. `monitor`: of large ones, also of what their systems
+/// solve later; not owned, may be null.
 equations::ElasticSolution solve_shell(const case_data::EvaluatedCase& inputs,
-                                       ShellPart& part);
+                                       ShellPart& part, Monitor* monitor);
 
 }  // namespace meniscus::shells

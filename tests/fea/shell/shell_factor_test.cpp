@@ -83,9 +83,10 @@ struct Vault {
         whole_stiffness(facet_of(shell.mesh, sections, laws, facet)));
   }
 
-  ShellFactor factor(const ShellFactorOptions& options) const {
+  ShellFactor factor(const ShellFactorOptions& options,
+                     Eigen::MatrixXd* right = nullptr) const {
     return {shell.mesh, freedom, [this](int f) { return stiffness(f); },
-            options};
+            options, right};
   }
 };
 
@@ -98,6 +99,9 @@ TEST(ShellFactor, OfSubstructuresSolvesAsTheWhole) {
     const Eigen::MatrixXd right =
         Eigen::MatrixXd::Random(vault.freedom.unknowns(), 3);
     const Eigen::MatrixXd whole = vault.factor({.most_levels = 0}).solve(right);
+    Eigen::MatrixXd at_once = right;
+    vault.factor({.most_levels = 0}, &at_once);
+    EXPECT_TRUE(at_once == whole);
     for (const int levels : {1, 2, 3, 4}) {
       const ShellFactorOptions options = {
           .unknowns = 100, .most_levels = levels, .kept_bytes = kAll};
@@ -107,6 +111,9 @@ TEST(ShellFactor, OfSubstructuresSolvesAsTheWhole) {
       ShellFactorOptions remade = options;
       remade.kept_bytes = 0.0;
       EXPECT_TRUE(vault.factor(remade).solve(right) == parts);
+      Eigen::MatrixXd on_the_way = right;
+      vault.factor(remade, &on_the_way);
+      EXPECT_TRUE(on_the_way == parts);
     }
   }
 }
@@ -169,6 +176,35 @@ TEST(ShellFactor, HasTheSameBitsInAnyNumberOfThreads) {
   omp_set_num_threads(before);
 }
 
+TEST(ShellFactor, SaysHowFarItIsAndStops) {
+  struct Listener : Monitor {
+    std::vector<Progress> heard;
+    std::size_t most = 1000;
+    void progress(const Progress& progress) override {
+      heard.push_back(progress);
+    }
+    bool stop_requested() const override { return heard.size() >= most; }
+  } listener;
+  const Vault vault(8);
+  const ShellFactorOptions options = {.unknowns = 100, .monitor = &listener};
+  const Eigen::MatrixXd right =
+      Eigen::MatrixXd::Ones(vault.freedom.unknowns(), 1);
+  vault.factor(options).solve(right);
+  ASSERT_GE(listener.heard.size(), 6U);
+  for (const Progress& progress : listener.heard) {
+    EXPECT_GE(progress.fraction, 0.0) << progress.detail;
+    EXPECT_LT(progress.fraction, 1.0) << progress.detail;
+  }
+  // While substructures are condensed, and while they are solved.
+  const std::size_t all = listener.heard.size();
+  for (const std::size_t most : {std::size_t(1), all - 1}) {
+    listener.heard.clear();
+    listener.most = most;
+    EXPECT_THROW(vault.factor(options).solve(right), Interrupted);
+    EXPECT_EQ(listener.heard.size(), most);
+  }
+}
+
 TEST(ShellFactor, RefusesWhatIsNotPositiveDefinite) {
   const Vault vault(6);
   for (const int levels : {0, 3}) {
@@ -180,8 +216,9 @@ TEST(ShellFactor, RefusesWhatIsNotPositiveDefinite) {
     };
     EXPECT_THROW(make(), SolverError) << levels;
   }
-  EXPECT_THROW(vault.factor({}).solve(Eigen::MatrixXd::Zero(3, 1)),
-               SolverError);
+  Eigen::MatrixXd short_one = Eigen::MatrixXd::Zero(3, 1);
+  EXPECT_THROW(vault.factor({}).solve(short_one), SolverError);
+  EXPECT_THROW(vault.factor({}, &short_one), SolverError);
 }
 
 TEST(CutShell, GivesEveryNodeOneHome) {

@@ -210,6 +210,35 @@ TEST(ShellSystem, ReactionsBalanceTheLoads) {
       1.0, 1e-9);
 }
 
+TEST(ShellSystem, SolvesSeveralLoadsWithItsFactor) {
+  const MappedShell shell = barrel();
+  const std::vector<Section> sections = {isotropic(kYoung, 0.3, 4.0)};
+  std::vector<NodeSupport> supports;
+  hold(supports, shell.nodes([](double s, double) { return s < 1e-9; }),
+       "xyzabc");
+  supports.front().value[1] = 0.02;  // the same for all of them
+  std::vector<ShellLoads> loads(3);
+  loads[0].gravity = {1, 2, 3};
+  loads[1].pressures = {{3, 5.0}, {4, -2.0}};
+  loads[2].temperature = WallTemperature{.mean = 30.0, .across = 12.0};
+  for (const int levels : {0, 2}) {
+    const ShellFactorOptions options = {
+        .unknowns = 100, .most_levels = levels, .kept_bytes = 0.0};
+    const ShellSystem system(shell.mesh, sections, supports, facet_rule(),
+                             options, {}, {}, loads);
+    ASSERT_EQ(system.solutions().size(), loads.size());
+    for (std::size_t k = 0; k < loads.size(); ++k) {
+      const ShellSolution& found = system.solutions()[k];
+      const ShellSolution alone = system.solve(loads[k]);
+      EXPECT_LT((found.displacement - alone.displacement).norm(),
+                1e-10 * alone.displacement.norm());
+      EXPECT_LT((found.reaction - alone.reaction).norm(),
+                1e-10 * alone.reaction.norm());
+      EXPECT_NEAR(found.strain_energy / alone.strain_energy, 1.0, 1e-9);
+    }
+  }
+}
+
 /// Corners in any order, normals either way: the same wall.
 TEST(ShellSystem, FacetsMayBeNumberedAnyWay) {
   const MappedShell shell = barrel();
