@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <optional>
 #include <string>
 #ifdef __GLIBC__
 #include <malloc.h>
@@ -31,30 +32,24 @@ double number_in(const std::filesystem::path& path) {
   return std::ifstream(path) >> value ? value : kUnlimited;
 }
 
-/// Of a file of names and numbers; 0 where it is not there.
-double number_of(const std::filesystem::path& path, const std::string& name) {
+/// Of a file with a name and a number in each line.
+std::optional<double> number_of(const std::filesystem::path& path,
+                                const std::string& name) {
   std::ifstream file(path);
   std::string word;
   double value = 0.0;
-  while (file >> word >> value) {
+  std::string unit;
+  while (file >> word >> value && std::getline(file, unit)) {
     if (word == name) {
       return value;
     }
   }
-  return 0.0;
+  return std::nullopt;
 }
 
 double machine_has() {
-  std::ifstream file("/proc/meminfo");
-  std::string name;
-  double kib = 0.0;
-  std::string rest;
-  while (file >> name >> kib && std::getline(file, rest)) {
-    if (name == "MemAvailable:") {
-      return 1024.0 * kib;
-    }
-  }
-  return kUnlimited;
+  return 1024.0 *
+         number_of("/proc/meminfo", "MemAvailable:").value_or(kUnlimited);
 }
 
 /// Of a control group's files (cgroups(7)), in one of its two versions.
@@ -79,8 +74,10 @@ double folder_has(const std::filesystem::path& folder,
   }
   const std::string prefix = files.stat_prefix;
   return limit - used +
-         number_of(folder / "memory.stat", prefix + "inactive_file") +
-         number_of(folder / "memory.stat", prefix + "active_file");
+         number_of(folder / "memory.stat", prefix + "inactive_file")
+             .value_or(0.0) +
+         number_of(folder / "memory.stat", prefix + "active_file")
+             .value_or(0.0);
 }
 
 double process_has() {

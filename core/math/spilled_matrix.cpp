@@ -60,7 +60,7 @@ void transfer_all(char* data, std::size_t bytes, const char* what,
 }  // namespace
 
 SpilledMatrix::SpilledMatrix(const Eigen::MatrixXd& matrix)
-    : file_(unnamed_file()), rows_(matrix.rows()), columns_(matrix.cols()) {
+    : file_(unnamed_file()), rows_(matrix.rows()) {
   const int file = fileno(file_.get());
   // NOLINTNEXTLINE(cppcoreguidelines-pro-type-*): the bytes are not changed.
   auto* data = const_cast<char*>(reinterpret_cast<const char*>(matrix.data()));

@@ -17,8 +17,8 @@ class SpilledMatrix {
   /// Throws IoError, naming the folder, where it does not hold the file.
   explicit SpilledMatrix(const Eigen::MatrixXd& matrix);
 
-  Eigen::Index columns() const { return columns_; }
-  /// Those columns, the same bits. From any number of threads. Throws IoError.
+  /// Some of its columns, the same bits. From any number of threads. Throws
+  /// IoError.
   Eigen::MatrixXd read(Eigen::Index first, Eigen::Index count) const;
 
  private:
@@ -26,7 +26,7 @@ class SpilledMatrix {
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
   std::unique_ptr<std::FILE, Close> file_;
-  Eigen::Index rows_, columns_;
+  Eigen::Index rows_;
 };
 
 /// One of many, some of which memory has room for.

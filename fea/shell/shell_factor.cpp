@@ -97,18 +97,16 @@ ShellFactor::ShellFactor(const ShellMesh& mesh, const ShellFreedom& freedom,
     columns.emplace(*right, cut_.leaf_count());
   }
   const int leaves = cut_.leaf_count();
-  const int batch = leaves_at_once();
-  for (int first = 0; first < leaves; first += batch) {
-    for_leaves(
-        first, std::min(first + batch, leaves), "condensed",
-        [&](int leaf) { condense_leaf(leaf, columns ? &*columns : nullptr); });
-    // Wholes of which both halves are there, from below.
-    for (int whole = leaves - 1; whole > 0; --whole) {
-      if (schur_[2 * whole] && schur_[2 * whole + 1]) {
-        condense_halves(whole);
-      }
-    }
-  }
+  for_leaves(
+      "condensed",
+      [&](int leaf) { condense_leaf(leaf, columns ? &*columns : nullptr); },
+      [&] {  // wholes of which both halves are there, from below
+        for (int whole = leaves - 1; whole > 0; --whole) {
+          if (schur_[2 * whole] && schur_[2 * whole + 1]) {
+            condense_halves(whole);
+          }
+        }
+      });
   if (columns) {
     *right = solve_cuts(*columns);
   }
@@ -175,22 +173,22 @@ const ShellFactor::Leaf& ShellFactor::leaf_of(
   return *made;
 }
 
-template <class Each>
-void ShellFactor::for_leaves(int first, int end, const char* work,
-                             const Each& each) const {
+template <class Each, class After>
+void ShellFactor::for_leaves(const char* work, const Each& each,
+                             const After& after) const {
+  const int leaves = cut_.leaf_count();
   const int batch = leaves_at_once();
-  for (int begin = first; begin < end; begin += batch) {
-    const int count = std::min(batch, end - begin);
+  for (int first = 0; first < leaves; first += batch) {
     if (cut_.levels > 0) {
       throw_if_stopped(monitor_, "fea");
-      monitor_.progress(
-          {.stage = "fea",
-           .detail = fmt::format("substructures {}: {} of {}", work, begin,
-                                 cut_.leaf_count()),
-           .fraction = static_cast<double>(begin) / cut_.leaf_count()});
+      monitor_.progress({.stage = "fea",
+                         .detail = fmt::format("substructures {}: {} of {}",
+                                               work, first, leaves),
+                         .fraction = static_cast<double>(first) / leaves});
     }
-    parallel_for(count,
-                 [&](std::ptrdiff_t k) { each(begin + static_cast<int>(k)); });
+    parallel_for(std::min(batch, leaves - first),
+                 [&](std::ptrdiff_t k) { each(first + static_cast<int>(k)); });
+    after();
   }
 }
 
@@ -284,10 +282,13 @@ void ShellFactor::eliminate(int leaf, const Leaf& own, Columns& columns) const {
 Eigen::MatrixXd ShellFactor::solve(const Eigen::MatrixXd& right) const {
   check_rows(right);
   Columns columns(right, cut_.leaf_count());
-  for_leaves(0, cut_.leaf_count(), "solved", [&](int leaf) {
-    std::unique_ptr<Leaf> made;
-    eliminate(leaf, leaf_of(leaf, made), columns);
-  });
+  for_leaves(
+      "solved",
+      [&](int leaf) {
+        std::unique_ptr<Leaf> made;
+        eliminate(leaf, leaf_of(leaf, made), columns);
+      },
+      [] {});
   return solve_cuts(columns);
 }
 
@@ -317,17 +318,20 @@ Eigen::MatrixXd ShellFactor::solve_cuts(Columns& columns) const {
     solve_leading_upper(front.L.get(read), b);
     x(front.own, Eigen::all) = b.topRows(front.own.size());
   }
-  for_leaves(0, leaves, "solved back", [&](int k) {
-    std::unique_ptr<Leaf> made;
-    const Leaf& leaf = leaf_of(k, made);
-    Eigen::MatrixXd b =
-        Eigen::MatrixXd::Zero(leaf.own.size() + leaf.boundary.size(), x.cols());
-    b.topRows(leaf.own.size()) =
-        leaf.coupling.transpose() * x(leaf.boundary, Eigen::all);
-    x(leaf.own, Eigen::all) -=
-        leaf.factor.solve_leading(b, static_cast<int>(leaf.boundary.size()))
-            .topRows(leaf.own.size());
-  });
+  for_leaves(
+      "solved back",
+      [&](int k) {
+        std::unique_ptr<Leaf> made;
+        const Leaf& leaf = leaf_of(k, made);
+        Eigen::MatrixXd b = Eigen::MatrixXd::Zero(
+            leaf.own.size() + leaf.boundary.size(), x.cols());
+        b.topRows(leaf.own.size()) =
+            leaf.coupling.transpose() * x(leaf.boundary, Eigen::all);
+        x(leaf.own, Eigen::all) -=
+            leaf.factor.solve_leading(b, static_cast<int>(leaf.boundary.size()))
+                .topRows(leaf.own.size());
+      },
+      [] {});
   return std::move(x);
 }
 

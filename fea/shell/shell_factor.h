@@ -60,9 +60,9 @@ class ShellFactor {
   void check_rows(const Eigen::MatrixXd& right) const;
   void eliminate(int leaf, const Leaf& own, Columns& columns) const;
   Eigen::MatrixXd solve_cuts(Columns& columns) const;
-  /// Of those from `first` to below `end`, in threads.
-  template <class Each>
-  void for_leaves(int first, int end, const char* work, const Each& each) const;
+  /// Some in threads at a time, after() after each time.
+  template <class Each, class After>
+  void for_leaves(const char* work, const Each& each, const After& after) const;
   void condense_halves(int part);
   StoredMatrix stored(Eigen::MatrixXd matrix);
   std::vector<int> unknowns_of(const std::vector<int>& nodes) const;

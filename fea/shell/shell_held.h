@@ -22,8 +22,7 @@ Matrix6 rigid_motions(const Vec3& arm, double size);
 std::string motion_text(const Eigen::Matrix<double, 6, 1>& motion);
 
 /// The rigid motions that facets which hang together, by rigid rims too, are
-/// free to make, one a
-/// column, on the unknowns.
+/// free to make, one a column, on the unknowns.
 Eigen::MatrixXd free_motions(const ShellMesh& mesh,
                              const ShellFreedom& freedom);
 

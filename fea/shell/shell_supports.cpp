@@ -9,21 +9,13 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "fea/shell/shell_held.h"
 
 namespace meniscus::shell {
 
 namespace {
 
 constexpr double kMet = 1e-9;  // of rounding
-
-/// Columns: the cross products of x, y, z with the arm.
-Mat3 turn_by(const Vec3& arm) {
-  Mat3 R;
-  for (int k = 0; k < 3; ++k) {
-    R.col(k) = Vec3::Unit(k).cross(arm);
-  }
-  return R;
-}
 
 Mat3 axes_of(const std::optional<element::LocalAxes>& axes,
              const std::string& whose) {
@@ -185,11 +177,8 @@ void ShellFreedom::number_unknowns() {
 }
 
 Matrix6 ShellFreedom::by_seat(int node) const {
-  Matrix6 T = Matrix6::Identity();
-  if (seat(node) != node) {
-    T.topRightCorner<3, 3>() = turn_by(arm_[node]);
-  }
-  return T;
+  return seat(node) == node ? Matrix6(Matrix6::Identity())
+                            : rigid_motions(arm_[node], 1.0);
 }
 
 Eigen::Matrix<double, 6, Eigen::Dynamic> ShellFreedom::basis(int seat) const {

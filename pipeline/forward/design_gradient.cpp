@@ -80,6 +80,13 @@ class Adjoint {
         .load_cases[static_cast<std::size_t>(back.load_case)];
   }
 
+  /// Of a shell: whether something is held elsewhere than at 0, or by rigid
+  /// rims, whose derivatives are by the adjoint's reactions.
+  bool needs_reactions(const BackwardCase& back) const {
+    const loads::LoadCase& load_case = load_case_of(back);
+    return loads::enforces(load_case) || !load_case.pins.empty();
+  }
+
   /// Of a shell; on loan.
   shell::RimPair rim_pair(const BackwardCase& back) const {
     const shells::ShellCase& own =
@@ -136,8 +143,7 @@ void Adjoint::solve_shell_adjoints(DesignGradient& result) {
         right = shell::with_rotations(right);
       }
       back.lambda = solved.system->solve_forces(right);
-      if (loads::enforces(load_case_of(back)) ||
-          !load_case_of(back).pins.empty()) {
+      if (needs_reactions(back)) {
         back.adjoint_reactions =
             solved.system->stiffness_times(back.lambda) - right;
       }
@@ -395,7 +401,7 @@ double Adjoint::load_rate(const Backward& backward, std::size_t k,
   double rate = shells::work_rate(part, load_case, by, v) +
                 shells::action_rate(part, load_case, by,
                                     backward.partials.cases[k].by_actions);
-  if (loads::enforces(load_case) || !load_case.pins.empty()) {
+  if (needs_reactions(back)) {
     rate += shells::held_rate(part, load_case, by, rim_pair(back));
   }
   return rate;

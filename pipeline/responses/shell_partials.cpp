@@ -237,6 +237,14 @@ void add_held_work(const shells::ShellPart& part, const FoundModes& found,
   }
 }
 
+ResponsePartials mode_partials(const shells::ShellPart& part,
+                               shell::ModeWork work) {
+  Points by_points = std::move(work.by_points);
+  ResponsePartials result = shell_to_partials(part, std::move(work));
+  result.by_pin_point = std::move(by_points);
+  return result;
+}
+
 /// A sum over modes that were found with the design.
 ResponsePartials shell_modal(const ResponseTask& task) {
   const ModalSum& sum = modal_sum(*task.fields.modes, task.response.name);
@@ -259,20 +267,15 @@ ResponsePartials shell_modal(const ResponseTask& task) {
                                    own.displacement, modes, held);
       VectorX by_displacement = std::move(work.by_displacement);
       shell::ActionGradient by_actions = std::move(work.by_actions);
-      Points by_points = std::move(work.by_points);
-      result = shell_to_partials(part, std::move(work));
-      result.by_pin_point = std::move(by_points);
+      result = mode_partials(part, std::move(work));
       result.cases.push_back({.load_case = found.load_case,
                               .by_displacement = std::move(by_displacement),
                               .by_forces = {},
                               .by_temperature = {},
                               .by_actions = std::move(by_actions)});
     } else {
-      shell::ModeWork work =
-          shell::frequency_functional(part.mesh, part.sections, modes, held);
-      Points by_points = std::move(work.by_points);
-      result = shell_to_partials(part, std::move(work));
-      result.by_pin_point = std::move(by_points);
+      result = mode_partials(part, shell::frequency_functional(
+                                       part.mesh, part.sections, modes, held));
     }
   }
   result.value = sum.value;

@@ -78,11 +78,9 @@ shell_deck::DeckShellStep shell_step_of(const shells::ShellPart& part,
   const std::vector<shell::RigidRim> rims = shells::rigid_rims(part, load_case);
   std::vector<shell::NodeSupport> supports =
       shells::node_supports(part, load_case);
-  const shell::ShellFreedom freedom(nodes, supports, rims);
-  // Rims hold their nodes by their points, which stand behind all nodes.
-  std::erase_if(supports, [&](const shell::NodeSupport& support) {
-    return freedom.seat(support.node) != support.node;
-  });
+  // Their points, which stand behind all nodes, hold rims' nodes.
+  supports =
+      shells::off_rims(supports, shell::ShellFreedom(nodes, supports, rims));
   for (std::size_t r = 0; r < rims.size(); ++r) {
     if (rims[r].held != std::array<bool, 6>{}) {
       supports.push_back({.node = nodes + static_cast<int>(r),

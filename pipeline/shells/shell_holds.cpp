@@ -5,6 +5,8 @@
 #include <string>
 #include <utility>
 
+#include "core/geometry/surface_mesh.h"
+
 namespace meniscus::shells {
 
 namespace {
@@ -95,7 +97,7 @@ std::vector<shell::RigidRim> rigid_rims(const ShellPart& part,
     shell::RigidRim rim{
         .name = pin.surfaces.text(),
         .nodes = {nodes.begin(), nodes.end()},
-        .point = pin.holds() ? pin.point : Vec3(Vec3::Zero()),
+        .point = pin.point,
         .held = {pin.fix[0], pin.fix[1], pin.fix[2], pin.fix_rotation[0],
                  pin.fix_rotation[1], pin.fix_rotation[2]},
         .axes = pin.axes};
@@ -104,15 +106,21 @@ std::vector<shell::RigidRim> rigid_rims(const ShellPart& part,
     for (const int node : nodes) {
       rim.places.push_back(part.mesh.nodes[node]);
     }
-    // Any will do where nothing is held; near ones leave least to rounding.
-    for (const Vec3& place : rim.places) {
-      rim.point += pin.holds()
-                       ? Vec3(Vec3::Zero())
-                       : Vec3(place / static_cast<double>(nodes.size()));
+    if (!pin.holds()) {  // any will do; near ones leave least to rounding
+      rim.point = mean_of(rim.places);
     }
     rims.push_back(std::move(rim));
   }
   return rims;
+}
+
+std::vector<shell::NodeSupport> off_rims(
+    std::vector<shell::NodeSupport> supports,
+    const shell::ShellFreedom& freedom) {
+  std::erase_if(supports, [&](const shell::NodeSupport& support) {
+    return freedom.seat(support.node) != support.node;
+  });
+  return supports;
 }
 
 std::vector<shell::GroundSpring> ground_springs(
@@ -132,11 +140,10 @@ namespace {
 VectorX held_at(const ShellPart& part, const loads::LoadCase& load_case) {
   const auto nodes = static_cast<int>(part.mesh.nodes.size());
   const shell::ShellFreedom of_rims(nodes, {}, rigid_rims(part, load_case));
-  std::vector<shell::NodeSupport> supports = node_supports(part, load_case);
-  std::erase_if(supports, [&](const shell::NodeSupport& support) {
-    return of_rims.seat(support.node) != support.node;
-  });
-  return shell::ShellFreedom(nodes, supports, of_rims.rims()).held_values();
+  return shell::ShellFreedom(nodes,
+                             off_rims(node_supports(part, load_case), of_rims),
+                             of_rims.rims())
+      .held_values();
 }
 
 }  // namespace

@@ -18,6 +18,11 @@ std::vector<shell::NodeSupport> node_supports(const ShellPart& part,
 std::vector<shell::RigidRim> rigid_rims(const ShellPart& part,
                                         const loads::LoadCase& load_case);
 
+/// Without those of nodes on rims, which hold their nodes by themselves.
+std::vector<shell::NodeSupport> off_rims(
+    std::vector<shell::NodeSupport> supports,
+    const shell::ShellFreedom& freedom);
+
 /// The springs under its films.
 std::vector<shell::GroundSpring> ground_springs(
     const ShellPart& part, const loads::LoadCase& load_case);
