@@ -17,7 +17,7 @@
 #include "pipeline/store/stored_case.h"
 #include "report/output/run_pictures.h"
 #include "report/page/report_page.h"
-#include "report/picture/picture.h"
+#include "report/picture/renderer.h"
 
 namespace meniscus::app {
 

@@ -394,6 +394,12 @@ AskedChild::~AskedChild() {
   }
 }
 
+void AskedChild::set_limits(std::optional<double> time_limit,
+                            Monitor* monitor) {
+  impl_->options.time_limit = time_limit;
+  impl_->options.monitor = monitor;
+}
+
 std::optional<std::string> AskedChild::ask(std::string_view question) {
   Impl& impl = *impl_;
   if (impl.child.process < 0) {

@@ -65,6 +65,9 @@ class AskedChild {
   AskedChild(const AskedChild&) = delete;
   AskedChild& operator=(const AskedChild&) = delete;
 
+  /// Of the questions from now on, in place of those of the options.
+  void set_limits(std::optional<double> time_limit, Monitor* monitor);
+
   /// Its answer. Nothing where it ended, was stopped or ran into its time
   /// limit: end() says how, and it answers no more.
   std::optional<std::string> ask(std::string_view question);

@@ -1,6 +1,7 @@
 #include "core/frame.h"
 
 #include <cerrno>
+#include <fcntl.h>
 #include <unistd.h>
 
 namespace meniscus {
@@ -69,6 +70,12 @@ bool write_frame(int descriptor, std::string_view message) {
     rest.remove_prefix(static_cast<std::size_t>(sent));
   }
   return true;
+}
+
+int take_stdout() {
+  const int out = ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3);
+  const int null = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
+  return out < 0 || null < 0 || ::dup2(null, STDOUT_FILENO) < 0 ? -1 : out;
 }
 
 }  // namespace meniscus

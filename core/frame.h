@@ -27,6 +27,10 @@ std::optional<std::string> read_frame(int descriptor);
 /// False where nobody listens. Blocks.
 bool write_frame(int descriptor, std::string_view message);
 
+/// A descriptor of stdout for the helper's answers alone: what libraries print
+/// on stdout goes nowhere from then on. Below 0 where there is none.
+int take_stdout();
+
 /// Adds values to a message.
 class FrameWriter {
  public:

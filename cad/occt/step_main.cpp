@@ -2,7 +2,6 @@
 // OpenCASCADE itself and starts this to read under limits of time and memory:
 // OpenCASCADE may end its process on a damaged file. Questions on stdin,
 // answers on stdout (cad/step/step_messages.h).
-#include <fcntl.h>
 #include <new>
 #include <optional>
 #include <unistd.h>
@@ -17,6 +16,7 @@
 #include "cad/step/brep_message.h"
 #include "cad/step/step_messages.h"
 #include "core/error.h"
+#include "core/frame.h"
 
 namespace {
 
@@ -24,13 +24,6 @@ using namespace meniscus;
 using namespace meniscus::occt;
 using step::StepAnswer;
 using step::StepQuestion;
-
-/// Keeps the answers' stream for itself: OpenCASCADE may print on stdout.
-int take_stdout() {
-  const int out = ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3);
-  const int null = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
-  return out < 0 || null < 0 || ::dup2(null, STDOUT_FILENO) < 0 ? -1 : out;
-}
 
 class Answerer {
  public:

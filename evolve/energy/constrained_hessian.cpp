@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 
 #include "core/math/dense.h"
+#include "core/math/orthogonalize.h"
 
 namespace meniscus::energy {
 
@@ -50,12 +51,13 @@ RitzPair lanczos(const Operator& apply, Eigen::Index n, int negative) {
   Eigen::MatrixXd basis(n, steps);
   Eigen::MatrixXd small = Eigen::MatrixXd::Zero(steps, steps);
   VectorX v = n > 0 ? apply(start_vector(n)) : VectorX();
+  VectorX along;  // the basis' part of v
   RitzPair found;
   double scale = 0.0;
   Eigen::Index built = 0;
   while (built < steps) {
-    for (int pass = 0; pass < 2 && built > 0; ++pass) {
-      v -= basis.leftCols(built) * (basis.leftCols(built).transpose() * v);
+    if (built > 0) {
+      orthogonalize(basis, built, along, v);
     }
     const double length = v.norm();
     if (!(length > 1e-12 * scale)) {
@@ -64,8 +66,8 @@ RitzPair lanczos(const Operator& apply, Eigen::Index n, int negative) {
     basis.col(built) = v / length;
     v = apply(basis.col(built));
     scale = std::max(scale, v.norm());
-    small.col(built).head(built + 1) =
-        basis.leftCols(built + 1).transpose() * v;
+    along = coefficients_of(basis, built + 1, v);
+    small.col(built).head(built + 1) = along;
     ++built;
     if (built % kLanczosCheck == 0) {
       const double before = found.value;

@@ -91,6 +91,9 @@ class FilmEnergy {
   /// Fill-reducing order of pattern(), found at the first call.
   const std::vector<int>& order() const;
 
+  /// vertices() in that order, each where the first of its unknowns comes.
+  std::vector<int> vertex_order() const;
+
   struct Corner {
     int corner;
     int unknown;

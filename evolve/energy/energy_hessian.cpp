@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <unordered_set>
 
 #include <Eigen/Geometry>
 
@@ -106,6 +107,18 @@ const std::vector<int>& FilmEnergy::order() const {
     order_ = nested_dissection(pattern_);
   }
   return order_;
+}
+
+std::vector<int> FilmEnergy::vertex_order() const {
+  std::unordered_set<int> listed;
+  std::vector<int> result;
+  for (const int unknown : order()) {
+    const int v = vertices()[unknown];
+    if (listed.insert(v).second) {
+      result.push_back(v);
+    }
+  }
+  return result;
 }
 
 /// Per surface the pressure behind its facets less that in front of them.

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/math/dense.h"
+#include "core/math/orthogonalize.h"
 #include "evolve/energy/constrained_hessian.h"
 
 namespace meniscus::energy {
@@ -42,9 +43,7 @@ Eigen::Index extend_basis(const Eigen::MatrixXd& block, Eigen::Index built,
   for (Eigen::Index j = 0; j < block.cols() && built < basis.cols(); ++j) {
     VectorX v = block.col(j);
     const double before = v.norm();
-    for (int pass = 0; pass < 2; ++pass) {
-      v -= basis.leftCols(built) * (basis.leftCols(built).transpose() * v);
-    }
+    orthogonalize(basis, built, coefficients_of(basis, built, v), v);
     const double length = v.norm();
     if (length > kDependent * before) {
       basis.col(built++) = v / length;

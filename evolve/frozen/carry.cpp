@@ -206,10 +206,15 @@ Carry::Extension Carry::extend(const films::FilmComplex& reference, Part part,
   if (extension.factor) {
     return extension;
   }
-  // Films with triple lines have more unknowns than vertices: no order then.
-  const bool fits = order.size() == extension.vertices.size();
+  std::vector<int> own_order;
+  for (const int v : order) {
+    if (unknown_of[v] >= 0) {
+      own_order.push_back(unknown_of[v]);
+    }
+  }
+  const bool has_all = own_order.size() == extension.vertices.size();
   extension.factor.emplace(laplace.inner, FactorKind::Cholesky,
-                           fits ? order : std::vector<int>{});
+                           has_all ? own_order : std::vector<int>{});
   if (!extension.factor->factorize(laplace.inner)) {
     throw MeshError(
         "the reference film cannot be carried: its Laplacian is singular at "
@@ -237,7 +242,7 @@ Carry::Carry(const films::FilmComplex& reference, const std::vector<int>& lines,
   }
   if (!lines_.empty()) {
     over_lines_ = std::move(films_);
-    films_ = extend(reference, Part::Films, given_, {});
+    films_ = extend(reference, Part::Films, given_, film_order);
   }
   caps_ = extend(reference, Part::Caps, none, {});
   wetted_ = extend(reference, Part::Wetted, none, {});

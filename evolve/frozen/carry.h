@@ -23,7 +23,7 @@ namespace meniscus::frozen {
 class Carry {
  public:
   /// `lines`: vertices of lines that are given like rims. `film_order`:
-  /// elimination order of the free vertices, as FilmEnergy has found it. Throws
+  /// films' vertices in a good order of elimination, FilmEnergy's. Throws
   /// MeshError for a film whose Laplacian is singular.
   Carry(const films::FilmComplex& reference, const std::vector<int>& lines,
         const std::vector<int>& film_order);

@@ -637,7 +637,7 @@ FilmModel FilmModel::finish(std::unique_ptr<Impl> impl,
     model.impl_->carry.emplace(
         model.impl_->complex,
         lines_of(model.impl_->complex, model.impl_->energy->space()),
-        model.impl_->energy->order());
+        model.impl_->energy->vertex_order());
     model.impl_->usual_neck = model.impl_->reference.report.smallest_neck;
     model.impl_->reference = model.settle(initial, settle);
     model.impl_->lead_lines(initial);

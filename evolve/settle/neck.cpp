@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numeric>
 
@@ -11,6 +12,7 @@
 #include "core/geometry/box_tree.h"
 #include "core/heed_stop.h"
 #include "core/math/union_find.h"
+#include "core/parallel_for.h"
 
 namespace meniscus::settle {
 
@@ -19,6 +21,8 @@ namespace {
 constexpr double kFacing = 0.7;  // cosine between line and facet normal
 constexpr int kNearLine = 2;     // edges from a line, rim or junction
 constexpr int kCorner = 3;       // edges along the films
+constexpr int kParts = 16;       // of a range of unknowns
+constexpr int kFirstPart = 64;   // unknowns
 
 /// What lines of sight meet first. Not FacetTree's rays: a facet is met a
 /// little beyond its sides too, and who is passed over is the caller's say.
@@ -191,26 +195,34 @@ std::vector<char> near_lines(const energy::FilmEnergy& energy,
   return near;
 }
 
-/// Which facets are a few edges away from a vertex: across a corner, not
-/// across a neck.
-class Corners {
- public:
-  Corners(const std::vector<Triangle>& facets, std::size_t points)
-      : facets_(facets), start_(points + 1, 0), mark_(points, -1) {
+/// The facets at each point.
+struct FacetsAround {
+  std::vector<int> start;  // by point
+  std::vector<int> facet;
+
+  FacetsAround(const std::vector<Triangle>& facets, std::size_t points)
+      : start(points + 1, 0), facet(3 * facets.size()) {
     for (const Triangle& t : facets) {
       for (const int v : t) {
-        ++start_[v + 1];
+        ++start[v + 1];
       }
     }
-    std::partial_sum(start_.begin(), start_.end(), start_.begin());
-    around_.resize(3 * facets.size());
-    std::vector<int> next(start_.begin(), start_.end() - 1);
+    std::partial_sum(start.begin(), start.end(), start.begin());
+    std::vector<int> next(start.begin(), start.end() - 1);
     for (int f = 0; f < static_cast<int>(facets.size()); ++f) {
       for (const int v : facets[f]) {
-        around_[next[v]++] = f;
+        facet[next[v]++] = f;
       }
     }
   }
+};
+
+/// Which facets are a few edges away from a vertex: across a corner, not
+/// across a neck. Of one thread.
+class Corners {
+ public:
+  Corners(const std::vector<Triangle>& facets, const FacetsAround& around)
+      : facets_(facets), around_(around), mark_(around.start.size(), -1) {}
 
   bool has(int v, int facet) {
     if (v != centre_) {
@@ -230,9 +242,9 @@ class Corners {
     for (int ring = 0; ring < kCorner; ++ring) {
       const std::size_t last = found_.size();
       for (; first < last; ++first) {
-        for (int k = start_[found_[first]]; k < start_[found_[first] + 1];
-             ++k) {
-          for (const int u : facets_[around_[k]]) {
+        const int at = found_[first];
+        for (int k = around_.start[at]; k < around_.start[at + 1]; ++k) {
+          for (const int u : facets_[around_.facet[k]]) {
             if (mark_[u] != v) {
               mark_[u] = v;
               found_.push_back(u);
@@ -244,8 +256,7 @@ class Corners {
   }
 
   const std::vector<Triangle>& facets_;
-  std::vector<int> start_;
-  std::vector<int> around_;
+  const FacetsAround& around_;
   std::vector<int> mark_;
   int centre_ = -1;
   std::vector<int> found_;
@@ -264,59 +275,120 @@ std::vector<int> joined_films(const energy::FilmEnergy& energy,
   return films.roots();
 }
 
+/// A line across a body, from an unknown's vertex to a facet.
+struct Across {
+  double length = std::numeric_limits<double>::infinity();
+  int unknown = -1;
+  Vec3 direction = Vec3::Zero();
+  int facet = -1;
+};
+
+/// The search for the shortest line; shortest_of() may run in many threads.
+class NeckSearch {
+ public:
+  NeckSearch(const energy::FilmEnergy& energy, const Points& points)
+      : energy_(energy),
+        points_(points),
+        lines_(energy.facets(), points),
+        normals_(energy.space().directions(points)),
+        looks_(outlooks(energy, points.size())),
+        near_(near_lines(energy, points.size())),
+        film_(joined_films(energy, points.size())),
+        around_(energy.facets(), points.size()) {}
+
+  int facet_of(int unknown) const { return looks_[unknown].facet; }
+
+  /// The shortest from the unknowns first to last - 1 that is shorter than
+  /// `bound`, of equal ones the first; else `bound` itself.
+  Across shortest_of(int first, int last, const Across& bound) const {
+    Corners corners(energy_.facets(), around_);
+    Across best = bound;
+    for (int i = first; i < last; ++i) {
+      const int v = energy_.vertices()[i];
+      for (const int bit : {1, 2}) {
+        if ((looks_[i].sides & bit) == 0 || normals_[i].isZero() ||
+            energy_.space().rank(v) != 1) {
+          continue;
+        }
+        look(i, bit == 1 ? Vec3(-normals_[i]) : normals_[i], corners, best);
+      }
+    }
+    return best;
+  }
+
+ private:
+  void look(int i, const Vec3& direction, Corners& corners,
+            Across& best) const {
+    const std::vector<Triangle>& facets = energy_.facets();
+    const int v = energy_.vertices()[i];
+    // What counts: facets of the same body, not about the vertex itself, and
+    // no corner of the film at a rim or line.
+    const auto accept = [&](int f) {
+      const Triangle& t = facets[f];
+      const bool corner = near_[v] != 0 &&
+                          near_[t[0]] + near_[t[1]] + near_[t[2]] > 0 &&
+                          corners.has(v, f);
+      return t[0] != v && t[1] != v && t[2] != v && !corner &&
+             share_body(energy_, f, looks_[i].facet);
+    };
+    // Only hits nearer than the least so far matter, which bounds the search.
+    double length = best.length;
+    const int f = lines_.first_hit(points_[v], direction, length, accept);
+    if (f < 0 || !energy_.is_liquid(f) || film_[facets[f][0]] != film_[v]) {
+      return;
+    }
+    const Triangle& t = facets[f];
+    // A neck lies between sides that face each other; grazing hits are none.
+    const Vec3 normal = (points_[t[1]] - points_[t[0]])
+                            .cross(points_[t[2]] - points_[t[0]])
+                            .normalized();
+    if (std::abs(normal.dot(direction)) > kFacing) {
+      best = {length, i, direction, f};
+    }
+  }
+
+  const energy::FilmEnergy& energy_;
+  const Points& points_;
+  SightLines lines_;
+  Points normals_;
+  std::vector<Outlook> looks_;
+  std::vector<char> near_;
+  std::vector<int> film_;
+  FacetsAround around_;
+};
+
 }  // namespace
 
 Neck narrowest_neck(const energy::FilmEnergy& energy, const Points& points,
                     const std::vector<int>& facet_label) {
-  const std::vector<Triangle>& facets = energy.facets();
-  const SightLines lines(facets, points);
-  const Points normals = energy.space().directions(points);
-  const std::vector<Outlook> looks = outlooks(energy, points.size());
-  const std::vector<char> near = near_lines(energy, points.size());
-  const std::vector<int> film = joined_films(energy, points.size());
-  Corners corners(facets, points.size());
-  Neck neck;
-  double least = std::numeric_limits<double>::infinity();
+  const NeckSearch search(energy, points);
   // A ray from every smooth film vertex along the inward normal, or both ways
-  // where the film encloses nothing.
-  for (int i = 0; i < energy.unknowns(); ++i) {
+  // where the film encloses nothing. In threads by parts of a range; what is
+  // found bounds the next, four times as long: as in one walk, whatever the
+  // threads.
+  Across best;
+  int part = kFirstPart;
+  for (int first = 0; first < energy.unknowns(); part *= 4) {
     heed_stop("film");
-    const int v = energy.vertices()[i];
-    for (const int bit : {1, 2}) {
-      if ((looks[i].sides & bit) == 0 || normals[i].isZero() ||
-          energy.space().rank(v) != 1) {
-        continue;
-      }
-      const Vec3 direction = bit == 1 ? Vec3(-normals[i]) : normals[i];
-      // Only hits nearer than the least so far matter, which bounds the search.
-      double length = least;
-      // What counts: facets of the same body, not about the vertex itself, and
-      // no corner of the film at a rim or line.
-      const auto accept = [&](int f) {
-        const Triangle& t = facets[f];
-        const bool corner = near[v] != 0 &&
-                            near[t[0]] + near[t[1]] + near[t[2]] > 0 &&
-                            corners.has(v, f);
-        return t[0] != v && t[1] != v && t[2] != v && !corner &&
-               share_body(energy, f, looks[i].facet);
-      };
-      const int f = lines.first_hit(points[v], direction, length, accept);
-      if (f < 0 || !energy.is_liquid(f) || film[facets[f][0]] != film[v]) {
-        continue;
-      }
-      const Triangle& t = facets[f];
-      // A neck lies between sides that face each other; grazing hits are none.
-      const Vec3 normal = (points[t[1]] - points[t[0]])
-                              .cross(points[t[2]] - points[t[0]])
-                              .normalized();
-      if (std::abs(normal.dot(direction)) > kFacing) {
-        least = length;
-        neck.width = length;
-        neck.position = points[v] + 0.5 * length * direction;
-        neck.surface = facet_label[looks[i].facet];
-        neck.opposite = facet_label[f];
-      }
+    const int last = static_cast<int>(std::min<std::int64_t>(
+        energy.unknowns(), first + std::int64_t{kParts} * part));
+    std::array<Across, kParts> found;
+    parallel_for(kParts, [&](std::ptrdiff_t k) {
+      const auto from = static_cast<int>(first + k * part);
+      found[k] = search.shortest_of(from, std::min(last, from + part), best);
+    });
+    for (const Across& line : found) {
+      best = line.length < best.length ? line : best;
     }
+    first = last;
+  }
+  Neck neck;
+  if (best.unknown >= 0) {
+    neck.width = best.length;
+    neck.position = points[energy.vertices()[best.unknown]] +
+                    0.5 * best.length * best.direction;
+    neck.surface = facet_label[search.facet_of(best.unknown)];
+    neck.opposite = facet_label[best.facet];
   }
   return neck;
 }

@@ -278,29 +278,6 @@ FacetGradient facet_gradient(const FacetResidual& residual, Tape& tape) {
   return gradient;
 }
 
-FacetGradient facet_mass_gradient(const Facet& facet, Tape& tape) {
-  const TapedFacet taped(facet, tape);
-  Taped mass(0.0);
-  std::vector<PlyGradient> by_ply(facet.law->plies.size());
-  for (const FacetPoint& p : facet_rule()) {
-    const TapedPoint at = taped_point(facet, taped, p);
-    const Taped area = p.weight * at.wall.frame.area;
-    Taped density(0.0);
-    for_each_taped_layer(
-        at, [&](const Taped&, const Taped& weight, const Square<Taped>&,
-                const LayerPoint& layer) {
-          density = density + facet.law->plies[layer.ply].density * weight;
-          by_ply[layer.ply].density += area.value * weight.value;
-        });
-    mass = mass + area * density;
-  }
-  return {mass.value,
-          taped.transpose(mass),
-          std::move(by_ply),
-          ByLoads::Zero(),
-          {}};
-}
-
 void add_edge_gradient(const ShellMesh& mesh, const EdgeLoad& load,
                        const VectorX& v, ShellGradient& gradient) {
   for (const LinePoint& p : line_points(mesh, load.nodes)) {
@@ -390,20 +367,6 @@ double action_rate(const ShellMesh& mesh, const ActionGradient& by,
     }
   }
   return sum;
-}
-
-ShellGradient shell_mass(const ShellMesh& mesh,
-                         const std::vector<Section>& sections) {
-  check_shell(mesh, sections);
-  const std::vector<LaminateLaw> laws = laminate_laws(sections);
-  std::vector<FacetGradient> parts(mesh.facets.size());
-  parallel_for(static_cast<std::ptrdiff_t>(parts.size()),
-               [&](std::ptrdiff_t k) {
-                 static thread_local Tape tape;
-                 parts[k] = facet_mass_gradient(
-                     facet_of(mesh, sections, laws, static_cast<int>(k)), tape);
-               });
-  return gradient_of(mesh, parts);
 }
 
 }  // namespace meniscus::shell

@@ -37,8 +37,4 @@ ShellGradient residual_gradient(
 double action_rate(const ShellMesh& mesh, const ActionGradient& by,
                    const ShellLoads& rates);
 
-/// Mass with its derivatives. Throws as ShellSystem does.
-ShellGradient shell_mass(const ShellMesh& mesh,
-                         const std::vector<Section>& sections);
-
 }  // namespace meniscus::shell

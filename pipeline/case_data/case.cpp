@@ -54,13 +54,15 @@ void check_on_curves(const Case& input, const films::FilmSystem& system,
         place(input, from.quantity.line), from.quantity.key, found, curve,
         values.where(from.quantity)));
   };
+  std::vector<double> places(kPlacesOnCurve);
+  for (int k = 0; k < kPlacesOnCurve; ++k) {
+    places[k] = static_cast<double>(k) / kPlacesOnCurve;
+  }
   for (const curves::Curve& curve : system.curves) {
     if (std::find(curves.begin(), curves.end(), curve.name) == curves.end()) {
       continue;
     }
-    for (int k = 0; k < kPlacesOnCurve; ++k) {
-      const Vec3 at = curves::point_at(curve.shape,
-                                       static_cast<double>(k) / kPlacesOnCurve);
+    for (const Vec3& at : curves::points_at(curve.shape, places)) {
       try {
         const double value = value_at(field, field.own(), at);
         if (!(value > 0.0)) {

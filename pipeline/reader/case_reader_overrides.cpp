@@ -1,5 +1,6 @@
 #include "pipeline/reader/case_reader_overrides.h"
 
+#include <algorithm>
 #include <charconv>
 #include <span>
 
@@ -84,7 +85,17 @@ struct Slot {
   auto operator<=>(const Slot&) const = default;
 };
 
-/// Where the value goes; no parent when there is no such place.
+/// Is it a key of one of the vocabulary's tables that have no entries by name?
+bool is_key_of_table(const std::string& table, const std::string& key) {
+  return std::any_of(
+      case_tables().begin(), case_tables().end(), [&](const TableSpec& spec) {
+        return spec.name == table && !spec.named_entries &&
+               !is_entry_table(table) && find_key(spec, key) != nullptr;
+      });
+}
+
+/// Where the value goes; no parent when there is no such place. Begins a table
+/// that the file leaves out, [analysis] say.
 Slot find_slot(toml::table& root, const std::string& name) {
   std::vector<std::string> parts = split_key(name);
   if (parts.size() == 1) {
@@ -97,6 +108,10 @@ Slot find_slot(toml::table& root, const std::string& name) {
     }
     const bool of_head = find_key(case_table(""), name) != nullptr;
     return {of_head ? &root : nullptr, name};
+  }
+  if (parts.size() == 2 && !root.contains(parts[0]) &&
+      is_key_of_table(parts[0], parts[1])) {
+    root.insert(parts[0], toml::table{});
   }
   Slot slot{&root, parts.back()};
   for (std::size_t k = 0; k + 1 < parts.size() && slot.parent != nullptr; ++k) {

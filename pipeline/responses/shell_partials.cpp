@@ -81,12 +81,22 @@ ResponsePartials shell_energy(const ResponseTask& task) {
   return result;
 }
 
-/// The mass of a density of 1.
-ResponsePartials shell_volume(const shells::ShellPart& part) {
-  shell::ShellGradient gradient =
-      shell::shell_mass(part.mesh, shells::with_density(part.sections, 1.0));
-  gradient.by_ply.clear();
-  return shell_to_partials(part, std::move(gradient));
+/// The mass of the part, or its volume: that of a density of 1.
+ResponsePartials shell_mass(const ResponseTask& task, bool is_volume) {
+  const shells::ShellPart& part = *task.fields.shell;
+  const std::vector<shell::Section> sections =
+      is_volume ? shells::with_density(part.sections, 1.0) : part.sections;
+  ResponsePartials result;
+  if (task.derivatives == element::Derivatives::All) {
+    shell::ShellGradient gradient = shell::mass_integral(
+        part.mesh, sections, {.constant = 1.0}, Vec3::Zero());
+    if (is_volume) {
+      gradient.by_ply.clear();
+    }
+    result = shell_to_partials(part, std::move(gradient));
+  }
+  result.value = shell::mass_moments(part.mesh, sections, Vec3::Zero()).mass;
+  return result;
 }
 
 /// Along the direction, made unit: the first moment over the mass.
@@ -310,10 +320,8 @@ std::optional<ResponsePartials> shell_partials(const ResponseTask& task) {
     case Kind::Frequency:
       return shell_modal(task);
     case Kind::Mass:
-      return shell_to_partials(part,
-                               shell::shell_mass(part.mesh, part.sections));
     case Kind::Volume:
-      return shell_volume(part);
+      return shell_mass(task, task.response.kind == Kind::Volume);
     case Kind::CentreOfMass:
       return shell_centre(task);
     case Kind::Inertia:

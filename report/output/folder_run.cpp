@@ -21,6 +21,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
+// Of a run's: pages show many members beside one another, and pixels are most
+// of what pictures cost.
+constexpr double kMemberPictures = 0.6;
+
 store::StudyStore open_prepared(const case_data::Case& input,
                                 const FolderRunOptions& options) {
   prepare_run_folder(input, options.folder);
@@ -132,7 +136,8 @@ FolderRunResult FolderRun::run(const FolderRunListener& listener) {
 results::FamilyResult run_family_into_folder(
     const case_data::Case& input, const FolderRunOptions& options,
     const FolderRunListener& listener) {
-  std::mutex writing;  // one private display, one CAD kernel at a time
+  std::mutex writing;  // one CAD kernel at a time
+  picture::Renderer renderer;
   const Timer timer;
   const auto write_member = [&](const case_data::Case& member,
                                 const forward::EvaluationFields& fields,
@@ -140,6 +145,8 @@ results::FamilyResult run_family_into_folder(
                                 study::RunResult& outcome) {
     const std::lock_guard<std::mutex> guard(writing);
     RunOutputOptions chosen = output_options(options, listener);
+    chosen.renderer = &renderer;
+    chosen.picture_scale = kMemberPictures;
     chosen.time_limit = 0.0;  // of all members, not of each
     if (chosen.pictures && !options.pictures_when_late &&
         options.time_limit > 0.0 && timer.seconds() >= options.time_limit) {

@@ -1,5 +1,7 @@
 #include "report/output/run_output.h"
 
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include "core/error.h"
@@ -31,12 +33,16 @@ void RunOutput::begin(const forward::EvaluationFields& fields) {
         run_pictures(input_, fields, folder_);
     std::vector<std::string> names;
     names.reserve(jobs.size());
-    for (const picture::PictureJob& job : jobs) {
+    for (picture::PictureJob& job : jobs) {
       names.push_back(fs::path(job.output).filename().string());
+      for (int* side : {&job.width, &job.height}) {
+        *side = static_cast<int>(std::lround(options_.picture_scale * *side));
+      }
     }
     results::claim_files(folder_, names);
-    pictures_.emplace(std::move(jobs),
-                      picture::PictureOptions{.monitor = &in_time_});
+    pictures_.emplace(
+        options_.renderer != nullptr ? *options_.renderer : own_renderer_,
+        std::move(jobs), &in_time_);
   }
 }
 

@@ -9,19 +9,22 @@
 #include "core/monitor.h"
 #include "pipeline/study/study.h"
 #include "pipeline/study/study_monitor.h"
-#include "report/picture/picture.h"
+#include "report/picture/renderer.h"
 
 namespace meniscus::output {
 
 struct RunOutputOptions {
   bool pictures = true;
   bool frame_pictures = false;  // and one of each film of the history
+  double picture_scale = 1.0;   // of their width and height
   /// Formats of export_formats() to write the part in besides.
   std::vector<std::string> exports = {};
   std::string program_version = {};  // for the heads of those files
   double time_limit = 0.0;     // [s], from the start of the run: no pictures
                                // beyond it; 0: none
   Monitor* monitor = nullptr;  // not owned
+  /// That several runs share, not owned; null: one of its own.
+  picture::Renderer* renderer = nullptr;
 };
 
 /// The files of one run, from its best design on.
@@ -58,6 +61,7 @@ class RunOutput {
   RunOutputOptions options_;
   Monitor& monitor_;
   study::DeadlineMonitor in_time_;  // of pictures
+  picture::Renderer own_renderer_;
   std::optional<picture::PicturesBeside> pictures_;
 };
 

@@ -15,7 +15,7 @@
 #include "pipeline/frames/film_frames.h"
 #include "pipeline/shells/shell_body.h"
 #include "pipeline/whole/whole_part.h"
-#include "report/picture/picture.h"
+#include "report/picture/renderer.h"
 
 namespace meniscus::output {
 

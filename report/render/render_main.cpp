@@ -1,19 +1,18 @@
-/// meniscus-render: draws the picture jobs that come on stdin (picture_job.h).
-/// Needs a display; the program that starts it sees to that
-/// (report/picture/picture.h). Exit code 0: all drawn; 1: stderr says what is
-/// missing; 2: no valid jobs.
+/// meniscus-render: draws lists of picture jobs (picture_job.h) that come on
+/// stdin, and answers each on stdout with what failed (core/frame.h). Needs a
+/// display; the program that starts it sees to that
+/// (report/picture/renderer.h).
 #include <algorithm>
-#include <cstdio>
 #include <exception>
-#include <iostream>
-#include <iterator>
 #include <string>
+#include <unistd.h>
 #include <vector>
 #include <vtkObject.h>
 
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/frame.h"
 #include "report/render/render_views.h"
 #include "report/render/save_picture.h"
 
@@ -175,17 +174,9 @@ void draw_overview(const picture::PictureJob& job) {
   save_picture(panels, job.width, height, job.output);
 }
 
-int run() {
-  const std::string text{std::istreambuf_iterator<char>(std::cin), {}};
-  std::vector<picture::PictureJob> jobs;
-  try {
-    jobs = picture::picture_jobs_from_bytes(text);
-  } catch (const Error& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return 2;
-  }
-  vtkObject::GlobalWarningDisplayOff();
-  int code = 0;
+/// What failed, a line each; empty when all are drawn.
+std::string draw_all(const std::vector<picture::PictureJob>& jobs) {
+  std::string failed;
   for (const picture::PictureJob& job : jobs) {
     try {
       if (job.kind == picture::PictureKind::Overview) {
@@ -194,14 +185,30 @@ int run() {
         draw_one(job);
       }
     } catch (const std::exception& error) {
-      std::fprintf(stderr, "%s: %s\n", job.output.c_str(), error.what());
-      code = 1;
+      failed += fmt::format("{}: {}\n", job.output, error.what());
     }
   }
-  return code;
+  return failed;
+}
+
+std::string answer(const std::string& question) {
+  try {
+    return draw_all(picture::picture_jobs_from_bytes(question));
+  } catch (const Error& error) {
+    return error.what();
+  }
 }
 
 }  // namespace
 }  // namespace meniscus::render
 
-int main() { return meniscus::render::run(); }
+int main() {
+  vtkObject::GlobalWarningDisplayOff();
+  const int out = meniscus::take_stdout();
+  while (const auto question = meniscus::read_frame(STDIN_FILENO)) {
+    if (!meniscus::write_frame(out, meniscus::render::answer(*question))) {
+      ::_exit(1);
+    }
+  }
+  ::_exit(0);  // the window's context is not taken apart
+}

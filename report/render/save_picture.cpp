@@ -28,12 +28,21 @@ constexpr int kCompression = 3;
 constexpr std::array<std::array<double, 2>, 4> kSamples = {
     {{-0.125, -0.375}, {0.375, -0.125}, {0.125, 0.375}, {-0.375, 0.125}}};
 
+/// One for all pictures of the process: what one has compiled serves the next.
+vtkRenderWindow* shared_window() {
+  static const vtkNew<vtkRenderWindow> window = [] {
+    vtkNew<vtkRenderWindow> made;
+    made->SetOffScreenRendering(1);
+    made->SetMultiSamples(0);
+    made->SwapBuffersOff();
+    return made;
+  }();
+  return window;
+}
+
 /// The shapes of all panels, the mean of the passes.
 void draw_shapes(const std::vector<Panel*>& panels, Canvas& canvas) {
-  vtkNew<vtkRenderWindow> window;
-  window->SetOffScreenRendering(1);
-  window->SetMultiSamples(0);
-  window->SwapBuffersOff();
+  vtkRenderWindow* window = shared_window();
   window->SetSize(canvas.width(), canvas.height());
   for (Panel* panel : panels) {
     window->AddRenderer(panel->renderer());

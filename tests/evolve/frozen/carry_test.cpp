@@ -17,7 +17,7 @@ struct Tube {
 
   Tube()
       : complex(make()),
-        carry(complex, {}, energy::FilmEnergy(complex).order()) {}
+        carry(complex, {}, energy::FilmEnergy(complex).vertex_order()) {}
 
   static films::FilmComplex make() {
     films::FilmComplex complex =

@@ -122,7 +122,7 @@ TEST(FilmAdjoint, ProductsAreDifferencesOfGradients) {
 
 TEST(FilmAdjoint, CarryIsTransposed) {
   const Film film;
-  const frozen::Carry carry(film.complex, {}, film.energy.order());
+  const frozen::Carry carry(film.complex, {}, film.energy.vertex_order());
   Points moves = waves(film.x.size(), 3);
   for (std::size_t v = 0; v < moves.size(); ++v) {
     if (film.complex.vertices[v].kind != films::VertexKind::OnCurve) {

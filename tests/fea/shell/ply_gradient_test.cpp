@@ -136,9 +136,10 @@ TEST(PlyGradient, OfResidualsMeetsDifferences) {
 
 TEST(PlyGradient, OfMassMeetsDifferences) {
   const MappedShell shell = two_films();
-  expect_rate(shell_mass(shell.mesh, sections()).by_ply,
+  const MassForm mass{.constant = 1.0};
+  expect_rate(mass_integral(shell.mesh, sections(), mass, Vec3::Zero()).by_ply,
               [&](const std::vector<Section>& of) {
-                return shell_mass(shell.mesh, of).value;
+                return mass_moments(shell.mesh, of, Vec3::Zero()).mass;
               });
   const Vec3 from(0.1, 0.4, -0.2);
   MassForm form{.constant = 0.3, .linear = {1.0, -2.0, 0.5}};

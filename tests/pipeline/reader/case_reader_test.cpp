@@ -139,6 +139,24 @@ TEST(CaseReader, KeepsTheFilesOrderOfParameters) {
   }
 }
 
+TEST(CaseReader, OverridesBeginATableThatTheFileLeavesOut) {
+  const std::string text = strut();
+  ASSERT_EQ(text.find("[analysis]"), std::string::npos);
+  const reader::CaseReading reading =
+      reader::read_case_text(text, "case.toml", {"analysis.buckling=0"});
+  ASSERT_TRUE(reading.input.has_value()) << reading.problems[0];
+  EXPECT_EQ(reading.input->analysis.buckling, 0);
+  EXPECT_NE(
+      reader::read_case_text(text, "case.toml", {}).input->analysis.buckling,
+      0);
+  for (const char* slip :
+       {"analysis.bukling=0", "anlysis.buckling=0", "support.fix=x"}) {
+    const reader::CaseReading wrong =
+        reader::read_case_text(text, "case.toml", {slip});
+    EXPECT_FALSE(wrong.input.has_value()) << slip;
+  }
+}
+
 // A parameter that study.deviations names scatters like a design variable.
 TEST(CaseReader, LetsParametersScatter) {
   const std::string text = changed(

@@ -1,8 +1,11 @@
-#include "report/picture/picture.h"
+#include "report/picture/renderer.h"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
+#include <csignal>
 #include <cstdlib>
+#include <future>
 #include <optional>
 #include <set>
 #include <thread>
@@ -258,8 +261,9 @@ TEST_F(PictureTest, TheDisplayOpensToItsKeyOnly) {
                                   folder_.path().string()));
   fs::permissions(waiting, fs::perms::owner_all);
   ::setenv("MENISCUS_RENDER", waiting.c_str(), 1);
+  picture::Renderer renderer;
   const picture::PicturesBeside pictures(
-      {job(picture::PictureKind::Part, "a.png")}, {});
+      renderer, {job(picture::PictureKind::Part, "a.png")}, nullptr);
   const Timer timer;
   while (!fs::exists(folder_ / "key") && timer.seconds() < 30.0) {
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
@@ -295,10 +299,70 @@ TEST_F(PictureTest, BesideTheCallersWork) {
   if (!find_program("Xvfb")) {
     MENISCUS_NOT_HERE("Xvfb is not installed");
   }
-  picture::PicturesBeside pictures({job(picture::PictureKind::Part, "a.png")},
-                                   {});
+  picture::Renderer renderer;
+  picture::PicturesBeside pictures(
+      renderer, {job(picture::PictureKind::Part, "a.png")}, nullptr);
   EXPECT_THAT(pictures.wait(), IsEmpty());
   expect_picture((folder_ / "a.png").string(), 400, 300);
+}
+
+// The helper is a script that notes each of its starts.
+TEST_F(PictureTest, OneHelperDrawsListAfterListAndAnotherAfterItsEnd) {
+  if (!find_program("Xvfb")) {
+    MENISCUS_NOT_HERE("Xvfb is not installed");
+  }
+  const fs::path counting = folder_ / "counting";
+  write_file(
+      counting,
+      fmt::format("#!/bin/sh\necho $$ >> '{}'\nexec '{}'\n",
+                  (folder_ / "starts").string(),
+                  find_helper("meniscus-render", "MENISCUS_RENDER")->string()));
+  fs::permissions(counting, fs::perms::owner_all);
+  ::setenv("MENISCUS_RENDER", counting.c_str(), 1);
+  picture::Renderer renderer;
+  const auto draw = [&](picture::PictureKind kind, const std::string& name) {
+    return renderer.render({job(kind, name)});
+  };
+  EXPECT_THAT(draw(picture::PictureKind::Part, "a.png"), IsEmpty());
+  EXPECT_THAT(draw(picture::PictureKind::Film, "b.png"), IsEmpty());
+  EXPECT_THAT(draw(picture::PictureKind::Part, "c.png"), IsEmpty());
+  // What was drawn between leaves no trace, nor does the size.
+  EXPECT_EQ(read_file(folder_ / "a.png"), read_file(folder_ / "c.png"));
+  std::vector<std::future<std::vector<std::string>>> several;
+  for (const char* name : {"d.png", "e.png"}) {
+    several.push_back(
+        renderer.begin({job(picture::PictureKind::Part, name)}, {}));
+  }
+  for (auto& one : several) {
+    EXPECT_THAT(one.get(), IsEmpty());
+  }
+  EXPECT_EQ(read_file(folder_ / "a.png"), read_file(folder_ / "e.png"));
+  const std::string first = read_file(folder_ / "starts");
+  EXPECT_EQ(std::count(first.begin(), first.end(), '\n'), 1);
+  ::kill(std::stoi(first), SIGKILL);
+  EXPECT_THAT(draw(picture::PictureKind::Part, "f.png"),
+              ElementsAre(HasSubstr("pictures are missing")));
+  EXPECT_THAT(draw(picture::PictureKind::Part, "f.png"), IsEmpty());
+  EXPECT_EQ(read_file(folder_ / "a.png"), read_file(folder_ / "f.png"));
+}
+
+// Lists that wait when the Renderer ends are given up.
+TEST_F(PictureTest, ListsThatWaitEndWithTheRenderer) {
+  if (!find_program("Xvfb")) {
+    MENISCUS_NOT_HERE("Xvfb is not installed");
+  }
+  const fs::path hanging = folder_ / "hanging";
+  write_file(hanging, "#!/bin/sh\nsleep 60\n");
+  fs::permissions(hanging, fs::perms::owner_all);
+  ::setenv("MENISCUS_RENDER", hanging.c_str(), 1);
+  std::future<std::vector<std::string>> waiting;
+  {
+    picture::Renderer renderer;
+    const auto drawn = renderer.begin(
+        {job(picture::PictureKind::Part, "a.png")}, {.time_limit = 0.3});
+    waiting = renderer.begin({job(picture::PictureKind::Part, "b.png")}, {});
+  }
+  EXPECT_THROW(waiting.get(), Interrupted);
 }
 
 TEST_F(PictureTest, GivenUpWithTheCallersWork) {
@@ -306,10 +370,11 @@ TEST_F(PictureTest, GivenUpWithTheCallersWork) {
   write_file(hanging, "#!/bin/sh\nsleep 60\n");
   fs::permissions(hanging, fs::perms::owner_all);
   ::setenv("MENISCUS_RENDER", hanging.c_str(), 1);
+  picture::Renderer renderer;
   const Timer timer;
   {
     const picture::PicturesBeside given_up(
-        {job(picture::PictureKind::Part, "a.png")}, {});
+        renderer, {job(picture::PictureKind::Part, "a.png")}, nullptr);
   }
   EXPECT_LT(timer.seconds(), 30.0);  // of the 60 that it would take
   EXPECT_FALSE(fs::exists(folder_ / "a.png"));
