@@ -210,11 +210,13 @@ shell_deck::ShellDeck deck_of(const Part& part,
   for (auto& row : deck.thickness) {
     row.fill(part.thickness);
   }
-  deck.sections = {{.name = "part",
-                    .material = {.name = "m",
-                                 .youngs_modulus = part.material.youngs_modulus,
-                                 .poisson_ratio = part.material.poisson_ratio,
-                                 .density = part.material.density}}};
+  const io::DeckMaterial material{
+      .name = "m",
+      .youngs_modulus = part.material.youngs_modulus,
+      .poisson_ratio = part.material.poisson_ratio,
+      .density = part.material.density,
+      .orthotropic = {}};
+  deck.sections = {{.name = "part", .plies = {{material}}}};
   shell_deck::DeckShellStep step{.name = "load", .gravity = part.gravity};
   for (const shell::NodeSupport& support : supports_of(part, shell)) {
     step.supports.push_back({{support.node}, support.held});
