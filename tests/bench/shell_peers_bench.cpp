@@ -223,13 +223,9 @@ shell_deck::ShellDeck deck_of(const Part& part,
   }
   shell::ShellLoads edges = loads_of(part, shell);
   edges.gravity.setZero();
-  const VectorX six = shell::nodal_forces(
+  step.nodal_forces = shell::nodal_forces(
       shell.mesh, {{.laminate = {.plies = {{.material = part.material}}}}},
       edges);
-  step.nodal_forces.resize(six.size() / 2);
-  for (Eigen::Index n = 0; n < six.size() / 6; ++n) {
-    step.nodal_forces.segment<3>(3 * n) = six.segment<3>(6 * n);
-  }
   deck.steps = {step};
   return deck;
 }
