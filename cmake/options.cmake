@@ -28,7 +28,10 @@ target_compile_options(meniscus_options INTERFACE
 # Debian's Ceres and VTK are built for plain x86-64. Eigen chooses alignment,
 # and with it the allocator, by instruction set; one fixed value keeps Eigen
 # objects exchangeable with those libraries.
-target_compile_definitions(meniscus_options INTERFACE EIGEN_MAX_ALIGN_BYTES=16)
+# Eigen's own threads sum products in another order than one thread does, and
+# start for products of a few rows.
+target_compile_definitions(meniscus_options INTERFACE
+  EIGEN_MAX_ALIGN_BYTES=16 EIGEN_DONT_PARALLELIZE)
 target_include_directories(meniscus_options INTERFACE
   $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
   $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/meniscus>)

@@ -45,7 +45,8 @@ struct CaseContext {
   std::vector<Measure> measures;
   std::vector<std::string> shapes;    // of fields, by position
   std::set<std::size_t> used_shapes;  // some expression has them
-  bool bodies_good = false;           // nothing was wrong with them
+  // There are bodies, walls or shells, and nothing was wrong with bodies.
+  bool bodies_good = false;
   /// What can be loaded, once a load has asked: walls and shells are read.
   std::optional<std::vector<std::string>> surfaces;
   // Of the copy of an entry with `repeat` that is being read: i, j, k.

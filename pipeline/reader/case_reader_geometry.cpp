@@ -201,8 +201,9 @@ void read_geometry(CaseContext& context, const toml::table& root,
     case_data::add_cut_faces(result, context.problems);
   }
   case_data::check_bodies(result, context.problems);
-  context.bodies_good =
-      !result.bodies.empty() && context.problems.size() == before;
+  const bool any = !result.bodies.empty() || root.contains("walls") ||
+                   root.contains("shells");  // which are read later
+  context.bodies_good = any && context.problems.size() == before;
 }
 
 }  // namespace meniscus::reader

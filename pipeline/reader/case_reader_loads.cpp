@@ -127,10 +127,11 @@ void read_support(CaseContext& context, const CaseTable& table,
     context.problems.add(
         table.line(),
         fmt::format(
-            "{} on '{}' has {}; expected one of fix and stiffness or "
+            "{} on '{}' has {}; expected one of fix{} and stiffness or "
             "normal_stiffness",
             table.path(), surfaces.text(),
-            springs ? "both fix and springs" : "neither fix nor springs"));
+            springs ? "both fix and springs" : "neither fix nor springs",
+            turns ? ", fix_rotation" : ""));
   } else if (springs) {
     refuse_foreign(context, table,
                    {"by", "displacement", "at", "fix_rotation", "rotation"},

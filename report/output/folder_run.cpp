@@ -1,8 +1,12 @@
 #include "report/output/folder_run.h"
 
+#include <algorithm>
 #include <mutex>
 
+#include <fmt/format.h>
+
 #include "core/atomic_file.h"
+#include "core/count_text.h"
 #include "core/error.h"
 #include "core/timer.h"
 #include "pipeline/forward/forward_model.h"
@@ -138,6 +142,8 @@ results::FamilyResult run_family_into_folder(
     const FolderRunListener& listener) {
   std::mutex writing;  // one CAD kernel at a time
   picture::Renderer renderer;
+  std::size_t without_pictures = 0;  // members
+  std::string why;
   const Timer timer;
   const auto write_member = [&](const case_data::Case& member,
                                 const forward::EvaluationFields& fields,
@@ -154,9 +160,16 @@ results::FamilyResult run_family_into_folder(
       outcome.warnings.emplace_back(
           "the family's time limit left no time for pictures");
     }
+    const std::size_t before = outcome.warnings.size();
     RunOutput(member, folder, chosen).finish(fields, outcome);
+    const auto lost = std::find_if(
+        outcome.warnings.begin() + static_cast<std::ptrdiff_t>(before),
+        outcome.warnings.end(), picture::is_about_pictures);
+    if (lost != outcome.warnings.end() && without_pictures++ == 0) {
+      why = *lost;
+    }
   };
-  return results::run_family(
+  results::FamilyResult result = results::run_family(
       input, {.folder = options.folder,
               .program_version = options.program_version,
               .resume = options.resume,
@@ -167,6 +180,11 @@ results::FamilyResult run_family_into_folder(
               .listener = listener.evaluated,
               .monitor = listener.monitor,
               .write_files = write_member});
+  if (without_pictures > 0) {
+    result.warnings.push_back(
+        fmt::format("{}: {}", count_text(without_pictures, "member"), why));
+  }
+  return result;
 }
 
 void write_family_pages(const results::FamilyResult& result,

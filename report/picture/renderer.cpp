@@ -7,6 +7,7 @@
 #include <deque>
 #include <mutex>
 #include <optional>
+#include <string_view>
 #include <thread>
 
 #include <fmt/format.h>
@@ -22,6 +23,8 @@ namespace {
 
 constexpr const char* kHelper = "meniscus-render";
 constexpr const char* kHelperVariable = "MENISCUS_RENDER";
+constexpr std::string_view kNone = "no pictures: ";
+constexpr std::string_view kIncomplete = "pictures are missing or incomplete: ";
 // Beside the caller's work: a third of its share of a processor that both
 // want, and time enough for that.
 constexpr int kNiceness = 5;
@@ -37,7 +40,7 @@ std::string in_one_line(std::string text) {
 }
 
 std::string incomplete(const std::string& reason) {
-  return fmt::format("pictures are missing or incomplete: {}", reason);
+  return std::string(kIncomplete) + reason;
 }
 
 /// The helper on its display, for one thread.
@@ -82,6 +85,8 @@ class Helper {
   }
 
   bool is_alive() const { return is_alive_; }
+  /// Of one that is not: nobody ended it for its time.
+  bool ended_by_itself() const { return !child_->end().timed_out; }
 
  private:
   PrivateDisplay display_;
@@ -131,14 +136,25 @@ struct Renderer::Impl {
     if (task.options.monitor != nullptr) {
       throw_if_stopped(*task.options.monitor, "pictures");
     }
-    try {
-      if (!helper) {
-        helper.emplace();
+    std::string failed;
+    // One that was ended since its last pictures, or its display, is no reason
+    // to go without them.
+    for (const bool is_last : {false, true}) {
+      const bool is_new = !helper;
+      try {
+        if (is_new) {
+          helper.emplace();
+        }
+      } catch (const IoError& error) {
+        return {std::string(kNone) + error.what()};
       }
-    } catch (const IoError& error) {
-      return {fmt::format("no pictures: {}", error.what())};
+      failed = helper->draw(task.jobs, task.options);
+      if (is_last || is_new || helper->is_alive() ||
+          !helper->ended_by_itself()) {
+        break;
+      }
+      helper.reset();
     }
-    const std::string failed = helper->draw(task.jobs, task.options);
     return failed.empty() ? std::vector<std::string>{}
                           : std::vector<std::string>{incomplete(failed)};
   }
@@ -185,6 +201,10 @@ std::future<std::vector<std::string>> Renderer::begin(
 std::vector<std::string> Renderer::render(std::vector<PictureJob> jobs,
                                           const PictureOptions& options) {
   return begin(std::move(jobs), options).get();
+}
+
+bool is_about_pictures(const std::string& warning) {
+  return warning.starts_with(kNone) || warning.starts_with(kIncomplete);
 }
 
 std::vector<std::string> render_pictures(std::vector<PictureJob> jobs,

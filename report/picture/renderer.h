@@ -49,6 +49,9 @@ class Renderer {
   std::unique_ptr<Impl> impl_;
 };
 
+/// Is a warning one of those that render() returns?
+bool is_about_pictures(const std::string& warning);
+
 /// By a Renderer of its own.
 std::vector<std::string> render_pictures(std::vector<PictureJob> jobs,
                                          const PictureOptions& options = {});

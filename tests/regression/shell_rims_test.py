@@ -216,6 +216,20 @@ load_case = "one"
         for w in end:
             self.assertLess(max(abs(a - b) for a, b in zip(w, end[0])), 1e-9)
 
+    # Shells are all that this case has: no body lends it a yield strength.
+    def test_strength_needs_one(self):
+        for kind, said in (("von_mises_ks", "has no 'scale'"),
+                           ("stress_ratio", "yield_strength")):
+            text = STRIP + f"""
+[responses.strength]
+kind = "{kind}"
+load_case = "tip"
+"""
+            self.assertNotIn("yield_strength", text)
+            self.assertNotIn("[bodies", text)
+            done = self.expect(self.call("check", self.case(text)), 2)
+            self.assertIn(said, done.stderr)
+
     def test_says_what_does_not_fit(self):
         rigid = ('{ on = "skin/rim:high", by = "rigid", at = [0, 0, 50], '
                  'fix = "x" }')
