@@ -139,8 +139,8 @@ struct Renderer::Impl {
     std::string failed;
     // One that was ended since its last pictures, or its display, is no reason
     // to go without them.
-    for (const bool is_last : {false, true}) {
-      const bool is_new = !helper;
+    for (bool is_new = false; !is_new;) {
+      is_new = !helper;
       try {
         if (is_new) {
           helper.emplace();
@@ -149,11 +149,12 @@ struct Renderer::Impl {
         return {std::string(kNone) + error.what()};
       }
       failed = helper->draw(task.jobs, task.options);
-      if (is_last || is_new || helper->is_alive() ||
-          !helper->ended_by_itself()) {
+      if (helper->is_alive() || !helper->ended_by_itself()) {
         break;
       }
-      helper.reset();
+      if (!is_new) {
+        helper.reset();
+      }
     }
     return failed.empty() ? std::vector<std::string>{}
                           : std::vector<std::string>{incomplete(failed)};
