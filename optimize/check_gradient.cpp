@@ -110,19 +110,24 @@ double size_of(double derivative, double value, double range) {
 // no two agree so well, those that differ least.
 class Plateau {
  public:
-  // `fine` and `coarse`: the differences of a step and of the next larger one.
-  // They agree well when they are `close`.
-  void compare(double fine, double coarse, double fine_step, double close) {
+  // `fine` and `coarse`: the differences of a step and of the next larger one;
+  // `allowed`: the error that a derivative may have.
+  void compare(double fine, double coarse, double fine_step, double allowed) {
+    constexpr double kWellWithin = 0.1;
     const double gap = std::abs(coarse - fine);
     if (!reached_ && gap < least_) {  // false for NaN
       least_ = gap;
       difference_ = fine;
       step_ = fine_step;
     }
-    reached_ = reached_ || gap <= close;
+    reached_ = reached_ || gap <= kWellWithin * allowed;
+    within_ = within_ || gap <= allowed;
   }
 
   bool reached() const { return reached_; }
+  // Two agree, if not well: what differs is the rounding, and smaller steps
+  // would agree by chance only.
+  bool within_tolerance() const { return within_; }
   double difference() const { return difference_; }
   double step() const { return step_; }
 
@@ -131,13 +136,13 @@ class Plateau {
   double difference_ = kNaN;
   double step_ = 0.0;
   bool reached_ = false;
+  bool within_ = false;
 };
 
 // One for each value, by variable j. Steps grow until all are reached; where
-// that leaves some, they shrink from the smallest.
+// for some no two agree within the tolerance, they shrink from the smallest.
 std::vector<Plateau> find_plateaus(Sweep& sweep, std::size_t j, double range,
                                    const GradientCheckOptions& options) {
-  constexpr double kWellWithin = 0.1;
   const VectorX& centre = sweep.centre();
   std::vector<Plateau> plateaus(static_cast<std::size_t>(centre.size()));
   const auto difference = [&](double step) {
@@ -147,24 +152,25 @@ std::vector<Plateau> find_plateaus(Sweep& sweep, std::size_t j, double range,
                            double fine_step) {
     for (std::size_t i = 0; i < plateaus.size(); ++i) {
       const auto line = static_cast<Eigen::Index>(i);
-      plateaus[i].compare(fine[line], coarse[line], fine_step * range,
-                          kWellWithin * options.tolerance *
-                              size_of(fine[line], centre[line], range));
+      plateaus[i].compare(
+          fine[line], coarse[line], fine_step * range,
+          options.tolerance * size_of(fine[line], centre[line], range));
     }
   };
-  const auto all_reached = [&] {
-    return std::all_of(plateaus.begin(), plateaus.end(),
-                       std::mem_fn(&Plateau::reached));
+  const auto all = [&](bool (Plateau::*holds)() const) {
+    return std::all_of(plateaus.begin(), plateaus.end(), std::mem_fn(holds));
   };
   const VectorX finest = difference(options.steps.back());
   VectorX last = finest;
-  for (std::size_t k = options.steps.size() - 1; k > 0 && !all_reached(); --k) {
+  for (std::size_t k = options.steps.size() - 1;
+       k > 0 && !all(&Plateau::reached); --k) {
     const VectorX coarse = difference(options.steps[k - 1]);
     compare(last, coarse, options.steps[k]);
     last = coarse;
   }
   last = finest;
-  for (std::size_t k = 0; k < options.finer_steps.size() && !all_reached();
+  for (std::size_t k = 0;
+       k < options.finer_steps.size() && !all(&Plateau::within_tolerance);
        ++k) {
     const VectorX fine = difference(options.finer_steps[k]);
     compare(fine, last, options.finer_steps[k]);

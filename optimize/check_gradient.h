@@ -16,8 +16,9 @@ struct GradientCheckOptions {
   /// Steps of the sweep x (upper - lower), from large to small; at least two,
   /// the smallest of which are evaluated first.
   std::vector<double> steps = {1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5};
-  /// Tried after them, from large to small, where no two of them agree: a
-  /// function with kinks nearby is smooth only within a smaller step.
+  /// Tried after them, from large to small, where no two of them agree within
+  /// the tolerance: a function with kinks nearby is smooth only within a
+  /// smaller step.
   std::vector<double> finer_steps = {3e-6, 1e-6, 3e-7, 1e-7};
   /// A derivative a passes when |a - f| <= tolerance max(|a|, |value| / range).
   double tolerance = 1e-5;

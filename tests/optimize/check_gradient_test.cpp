@@ -1,7 +1,10 @@
 #include "optimize/check_gradient.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
+#include <random>
 
 #include <gmock/gmock.h>
 
@@ -117,6 +120,37 @@ TEST(CheckGradient, LargerStepsAreTriedWhereSmallOnesSeeRounding) {
   EXPECT_GT(report.rows[0].step, 5e-5);  // of 2e-5 at least
   EXPECT_GT(report.evaluations, 1 + 2 * 2 * 2);
   EXPECT_LT(report.evaluations, 1 + 2 * 2 * 7);
+}
+
+/// As a film solved to 1e-10 of its deflection has it: a thousand functions of
+/// strong curvature, each of its own noise. Two of the smallest steps agree by
+/// chance now and then, and must not be believed over larger ones.
+TEST(CheckGradient, SmallStepsDoNotAgreeByChance) {
+  constexpr double kSlope = -13.0;
+  constexpr double kNoise = 1e-9;  // 1e-10 of the value
+  constexpr int kFunctions = 1000;
+  int right_refused = 0;
+  int wrong_passed = 0;
+  for (int seed = 0; seed < kFunctions; ++seed) {
+    const auto noisy = [&](const VectorX& x) {
+      std::mt19937_64 random(std::bit_cast<std::uint64_t>(x[0]) + seed);
+      const double t = x[0] - 0.5;
+      optimize::VectorAnswer answer;
+      answer.values = VectorX::Constant(
+          1, 6.4 + kSlope * t + 104.0 * t * t - 150.0 * t * t * t +
+                 std::uniform_real_distribution<>(-kNoise, kNoise)(random));
+      return answer;
+    };
+    const auto passes = [&](double given) {
+      return optimize::check_gradient({{"a", 0.5, 0.1, 0.9}}, {"noisy"}, noisy,
+                                      Eigen::MatrixXd::Constant(1, 1, given))
+          .passed;
+    };
+    right_refused += passes(kSlope) ? 0 : 1;
+    wrong_passed += passes(kSlope * (1.0 + 4e-5)) ? 1 : 0;
+  }
+  EXPECT_EQ(right_refused, 0);
+  EXPECT_EQ(wrong_passed, 0);
 }
 
 TEST(CheckGradient, NeighboursThatFailDoNotPass) {
