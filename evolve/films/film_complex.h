@@ -127,6 +127,8 @@ struct SolidPart {
 struct BodySide {
   int surface = 0;
   int sign = 1;
+
+  bool operator==(const BodySide&) const = default;
 };
 
 struct ComplexBody {
@@ -136,6 +138,8 @@ struct ComplexBody {
   std::optional<double> pressure;  // [force/length^2]
   double density = 0.0;            // [mass/length^3]; weight under gravity
   double volume_offset = 0.0;      // added to the measured volume [length^3]
+
+  bool operator==(const ComplexBody&) const = default;
 };
 
 /// Where the rays begin along which a body's scalar is summed.

@@ -17,6 +17,9 @@ struct FilmTargets {
   /// scalar or its poles (evolve/energy/pole_field.h), then per surface its
   /// tension_numbers(). Empty: none.
   std::vector<VectorX> numbers;
+
+  /// Of one model, whose numbers are as many.
+  bool operator==(const FilmTargets&) const = default;
 };
 
 /// Forces of a film are measured by it [force/length]; 0 without surfaces.

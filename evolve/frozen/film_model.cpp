@@ -15,6 +15,7 @@
 #include "evolve/films/rim_grading.h"
 #include "evolve/films/solid_facets.h"
 #include "evolve/frozen/film_model_impl.h"
+#include "evolve/frozen/line_gaps.h"
 #include "evolve/groom/rough_films.h"
 #include "evolve/groom/slivers.h"
 #include "evolve/settle/equilibrium.h"
@@ -485,7 +486,8 @@ std::optional<Failure> FilmModel::Impl::lines_that_meet(
   double stands = 0.0;  // of the way
   double fails = 1.0;
   settle::FilmState last = reference;
-  NarrowFilm narrow = gaps->narrowest(reference.points);
+  const LineGaps gaps(complex);
+  NarrowFilm narrow = gaps.narrowest(reference.points);
   for (int halving = 0; halving < kHalvings; ++halving) {
     const double t = 0.5 * (stands + fails);
     settle::FilmState state =
@@ -495,7 +497,7 @@ std::optional<Failure> FilmModel::Impl::lines_that_meet(
     } else {
       stands = t;
       last = std::move(state);
-      narrow = gaps->narrowest(last.points);
+      narrow = gaps.narrowest(last.points);
     }
   }
   if (narrow.ratio > kRunTogether) {
@@ -640,10 +642,8 @@ FilmModel FilmModel::finish(std::unique_ptr<Impl> impl,
         model.impl_->energy->vertex_order());
     model.impl_->usual_neck = model.impl_->reference.report.smallest_neck;
     model.impl_->reference = model.settle(initial, settle);
+    model.impl_->reference_goal = model.impl_->targets_of_system(initial);
     model.impl_->lead_lines(initial);
-    if (!model.impl_->carry->lines().empty()) {
-      model.impl_->gaps.emplace(model.impl_->complex);
-    }
   } else if (model.impl_->reference.points.size() !=
              model.impl_->complex.mesh.points.size()) {
     model.impl_->reference.points = model.impl_->complex.mesh.points;
@@ -673,6 +673,13 @@ settle::FilmState FilmModel::settle(
   }
   const films::FilmTargets goal = impl_->targets_of_system(system);
   const Points moves = impl_->carry->rim_moves(impl_->curves_of_system(system));
+  const bool moved = std::any_of(moves.begin(), moves.end(),
+                                 [](const Vec3& m) { return !m.isZero(0.0); });
+  if (!moved && impl_->reference_goal == goal && !impl_->reference.failure) {
+    settle::FilmState state = impl_->reference;
+    state.report.seconds = timer.seconds();
+    return state;
+  }
   settle::FilmState state;
   int iterations = 0;
   for (const int parts : kParts) {
@@ -686,9 +693,8 @@ settle::FilmState FilmModel::settle(
       break;
     }
   }
-  const bool moved = std::any_of(moves.begin(), moves.end(),
-                                 [](const Vec3& m) { return !m.isZero(0.0); });
-  if (state.failure && impl_->gaps && is_of_film(*state.failure)) {
+  if (state.failure && !impl_->carry->lines().empty() &&
+      is_of_film(*state.failure)) {
     if (std::optional<Failure> meeting =
             impl_->lines_that_meet(moves, goal, options)) {
       state.failure = std::move(meeting);

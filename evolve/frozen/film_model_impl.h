@@ -11,7 +11,6 @@
 #include "evolve/frozen/carry.h"
 #include "evolve/frozen/film_adjoint.h"
 #include "evolve/frozen/film_model.h"
-#include "evolve/frozen/line_gaps.h"
 #include "evolve/frozen/line_lead.h"
 
 namespace meniscus::frozen {
@@ -26,9 +25,10 @@ struct FilmModel::Impl {
   std::optional<energy::FilmEnergy> energy;
   std::optional<Carry> carry;
   std::unique_ptr<const LineLead> lead;  // null: no lines that move
-  std::optional<LineGaps> gaps;          // of the reference, where it has lines
   films::FilmTargets targets;
   settle::FilmState reference;
+  /// What settle() was asked for when it found the reference.
+  std::optional<films::FilmTargets> reference_goal;
   double usual_neck = 0.0;    // of the reference [length]
   double margin_scale = 0.0;  // lowest eigenvalue that margins are smooth by
   double start_edge = 0.0;    // of the start that it was found from [length]

@@ -84,6 +84,9 @@ double SurfaceEditor::most_facets(const EdgeTarget& target) const {
   constexpr double kMore = 10.0;     // x what is expected
   constexpr double kSmall = 1e5;
   const double expected = expected_facets(target);
+  if (kMore * expected <= kSmall) {  // 0.3 GB at most: memory is not asked for
+    return kMore * expected + kSmall;
+  }
   const double held = available_memory() / kBytes;
   if (expected > held) {
     throw InvalidInput(fmt::format(

@@ -44,7 +44,7 @@ constexpr int kPlacesOnCurve = 16;
 /// Tells where an expression of place is not above 0 on the curves that hold a
 /// film: what can be known before there is one.
 void check_on_curves(const Case& input, const films::FilmSystem& system,
-                     const std::vector<std::string>& curves,
+                     const std::set<std::string>& curves,
                      const PlaceQuantity& from, const PlaceField& field,
                      const CaseValues& values) {
   const auto add_problem = [&](const std::string& found,
@@ -59,7 +59,7 @@ void check_on_curves(const Case& input, const films::FilmSystem& system,
     places[k] = static_cast<double>(k) / kPlacesOnCurve;
   }
   for (const curves::Curve& curve : system.curves) {
-    if (std::find(curves.begin(), curves.end(), curve.name) == curves.end()) {
+    if (!curves.contains(curve.name)) {
       continue;
     }
     for (const Vec3& at : curves::points_at(curve.shape, places)) {
@@ -339,13 +339,13 @@ films::FilmSystem films_of(const Case& input, const CaseValues& values) {
   return system;
 }
 
-std::vector<std::string> curves_under(const Case& input,
-                                      const std::vector<std::string>& films) {
-  std::vector<std::string> curves;
+std::set<std::string> curves_under(const Case& input,
+                                   const std::vector<std::string>& films) {
+  const std::set<std::string> under(films.begin(), films.end());
+  std::set<std::string> curves;
   for (const FilmEntry& film : input.films) {
-    if (std::find(films.begin(), films.end(), film.spec.name) != films.end()) {
-      curves.insert(curves.end(), film.spec.curves.begin(),
-                    film.spec.curves.end());
+    if (under.contains(film.spec.name)) {
+      curves.insert(film.spec.curves.begin(), film.spec.curves.end());
     }
   }
   return curves;
@@ -377,8 +377,7 @@ PlaceField at_extreme(const PlaceField& field, bool largest) {
 /// Tells of shapes between rims that do not suit the wall's films. Has it any?
 bool check_rim_shapes(const Case& input, const walls::WallSpec& wall,
                       const PlaceQuantity& from, const CaseValues& values) {
-  const std::vector<std::string> under = curves_under(input, wall.films);
-  const std::set<std::string> ends(under.begin(), under.end());
+  const std::set<std::string> ends = curves_under(input, wall.films);
   bool found = false;
   for (const auto& shape : wall.thickness.shapes) {
     const walls::RimSplines* splines =
@@ -435,7 +434,7 @@ void check_flush(const Case& input, const WallEntry& wall,
 void check_thickness(const Case& input, const EvaluatedCase& inputs,
                      const walls::WallSpec& wall, const PlaceQuantity& from,
                      const CaseValues& values) {
-  const std::vector<std::string> curves = curves_under(input, wall.films);
+  const std::set<std::string> curves = curves_under(input, wall.films);
   const std::size_t before = values.problems().size();
   if (!check_rim_shapes(input, wall, from, values)) {
     check_on_curves(input, inputs.film_system, curves, from, wall.thickness,
@@ -456,7 +455,8 @@ void check_places(const Case& input, const EvaluatedCase& inputs,
   for (std::size_t k = 0; k < input.films.size(); ++k) {
     const films::FilmSpec& film = inputs.film_system.films[k];
     if (film.tension_field) {
-      check_on_curves(input, inputs.film_system, film.curves,
+      check_on_curves(input, inputs.film_system,
+                      {film.curves.begin(), film.curves.end()},
                       input.films[k].tension, *film.tension_field, values);
     }
   }

@@ -256,9 +256,11 @@ class Ledger(Live):
                          result["film"]["facets"])
         self.assertEqual(by_name["elasticity"]["after"]["elements"],
                          result["tet"]["elements"])
-        for name in ("start", "film", "motion", "elasticity"):
+        for name in ("start", "motion", "elasticity"):
             self.assertGreater(by_name[name]["operations"], 1e4, name)
             self.assertGreater(by_name[name]["seconds"], 0, name)
+        # The last mesh is made for the best design, whose film it begins with.
+        self.assertIsNone(by_name["film"]["operations"])
         for file in ledger["files"]:
             if file["written"]:
                 self.assertEqual((out / file["name"]).stat().st_size,

@@ -50,6 +50,16 @@ TEST(FilmModel, ReferenceIsTheInitialDesign) {
   const settle::FilmState state = bracket().settle(two_arm(0));
   EXPECT_TRUE(state.points == bracket().reference().points);
   EXPECT_LT(state.heights.cwiseAbs().maxCoeff(), 1e-3);
+  // It is kept, not settled again: a design as near as nothing is settled, and
+  // comes to rest there.
+  const settle::FilmState near = bracket().settle(two_arm(1e-8));
+  ASSERT_FALSE(near.failure) << near.report.verdict;
+  double apart = 0.0;
+  for (std::size_t v = 0; v < near.points.size(); ++v) {
+    apart = std::max(apart, (near.points[v] - state.points[v]).norm());
+  }
+  EXPECT_LT(apart, 1e-6);
+  EXPECT_GT(apart, 0.0);
 }
 
 TEST(FilmModel, MirroredDesignsHaveEqualAreas) {
