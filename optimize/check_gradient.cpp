@@ -113,30 +113,30 @@ class Plateau {
   // `fine` and `coarse`: the differences of a step and of the next larger one;
   // `allowed`: the error that a derivative may have.
   void compare(double fine, double coarse, double fine_step, double allowed) {
-    constexpr double kWellWithin = 0.1;
     const double gap = std::abs(coarse - fine);
-    if (!reached_ && gap < least_) {  // false for NaN
+    if (!reached() && gap < least_) {  // false for NaN
       least_ = gap;
+      allowed_ = allowed;
       difference_ = fine;
       step_ = fine_step;
     }
-    reached_ = reached_ || gap <= kWellWithin * allowed;
-    within_ = within_ || gap <= allowed;
   }
 
-  bool reached() const { return reached_; }
+  bool reached() const {
+    constexpr double kWellWithin = 0.1;
+    return least_ <= kWellWithin * allowed_;
+  }
   // Two agree, if not well: what differs is the rounding, and smaller steps
   // would agree by chance only.
-  bool within_tolerance() const { return within_; }
+  bool within_tolerance() const { return least_ <= allowed_; }
   double difference() const { return difference_; }
   double step() const { return step_; }
 
  private:
-  double least_ = std::numeric_limits<double>::infinity();
+  double least_ = std::numeric_limits<double>::infinity();  // gap
+  double allowed_ = 0.0;                                    // there
   double difference_ = kNaN;
   double step_ = 0.0;
-  bool reached_ = false;
-  bool within_ = false;
 };
 
 // One for each value, by variable j. Steps grow until all are reached; where
